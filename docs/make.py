@@ -1,13 +1,21 @@
-"""Writes the tables of the documents that follow from commands: make.py [--program PATH] [--check] [NAME ...].
+"""Writes what follows from commands in the documents: make.py [--program PATH] [--check] [NAME ...].
 
-A table stands between `<!-- make.py NAME -->` and `<!-- end -->` in a document of this folder. Without names all are written. With
---check nothing is written, and tables that are not current are an error.
+A table stands between `<!-- make.py NAME -->` and `<!-- end -->` in a document of this folder. In a document that is named, or in all
+of those in SESSIONS without names, the commands are run from the top in an empty folder that has the files of the document, and a
+text block is what the commands of the last shell block before it have printed:
+
+    <!-- output -->          all of it
+    <!-- output: part -->    from the line that begins as the first line of the block does to the one that begins as the last one does
+    <!-- output: lines -->   for each line of the block, the line that begins as it does
+
+Without names everything is written. With --check nothing is written, and what is not current is an error.
 """
 
 import argparse
 import json
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -85,16 +93,79 @@ def studies(kinefront):
 
 TABLES = {"published": published, "proofs": proofs, "studies": studies}
 
+# Documents whose commands are run, each with the headings of the sections that are, or all of them, and the document whose files it uses.
+SESSIONS = {
+    "tutorial": (None, None),
+    "howto": (["From a payload to requirements", "Drives"], "tutorial"),
+}
+
+BLOCK = re.compile(r"(?:<!-- (?P<mark>output[^>]*?|file: [^>]*?) -->\n\n)?^```(?P<kind>\w*)\n(?P<body>.*?)^```$", re.M | re.S)
+
+
+def key(line):
+    """The beginning of a line: its first cell, or the line up to the first number."""
+    cells = re.split("[│┆]", line)
+    return cells[1].strip() if len(cells) > 2 else re.split(r"\d", line)[0].strip()
+
+
+def renewed_block(mark, body, printed):
+    """A text block with what commands have printed."""
+    old, new = body.splitlines(), printed.splitlines()
+    find = lambda line, start=0: next(at for at in range(start, len(new)) if key(new[at]) == key(line))
+    try:
+        if mark == "output: lines":
+            new = [new[find(line)] for line in old]
+        elif mark == "output: part":
+            first = find(old[0])
+            new = new[first : find(old[-1], first) + 1]
+    except StopIteration:
+        sys.exit(f"a line of this block is not printed any more:\n{body}\nPrinted:\n{printed}")
+    return "\n".join(line.rstrip() for line in new) + "\n"
+
+
+def files(text):
+    return {match["mark"].removeprefix("file: "): match["body"] for match in BLOCK.finditer(text) if (match["mark"] or "").startswith("file")}
+
+
+def session(text, headings, others, kinefront):
+    """The text of a document with what its commands print."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, contents in [*files(others).items(), *files(text).items()]:
+            (pathlib.Path(folder) / name).write_text(contents, encoding="utf-8")
+        printed = ""
+
+        def renew(match):
+            nonlocal printed
+            above = re.findall(r"^##+ (.*)$", text[: match.start()], re.M)
+            if headings is not None and not set(above[-1:]) & set(headings):
+                return match.group(0)
+            if match["kind"] == "sh":
+                printed = ""
+                for line in match["body"].replace("\\\n", " ").splitlines():
+                    words = shlex.split(re.split(r"\s#", line)[0])
+                    if words[:1] == ["kinefront"] and words[1] != "explore":
+                        printed += kinefront(*words[1:], cwd=folder)
+            mark = match["mark"] or ""
+            if not mark.startswith("output"):
+                return match.group(0)
+            return f"<!-- {mark} -->\n\n```{match['kind']}\n{renewed_block(mark, match['body'], printed)}```"
+
+        return BLOCK.sub(renew, text)
+
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default="kinefront")
     parser.add_argument("--check", action="store_true")
-    parser.add_argument("names", nargs="*", metavar="NAME", default=[])
+    parser.add_argument("names", nargs="*", metavar="NAME", choices=[[], *TABLES, *SESSIONS], default=[])
     arguments = parser.parse_args()
+    is_asked = lambda name: not arguments.names or name in arguments.names
 
-    def kinefront(*command):
-        return subprocess.run([arguments.program, *command], check=True, stdout=subprocess.PIPE, text=True).stdout
+    def kinefront(*command, cwd=None):
+        done = subprocess.run([arguments.program, *command], cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        if done.returncode != 0:
+            sys.exit(f"kinefront {shlex.join(command)}\n{done.stdout}{done.stderr}")
+        return done.stdout
 
     stale, found = [], set()
     for path in sorted(FOLDER.glob("*.md")):
@@ -102,21 +173,26 @@ def main():
 
         def renew(match):
             name = match.group(1)
-            if arguments.names and name not in arguments.names:
+            if not is_asked(name):
                 return match.group(0)
-            if name not in TABLES:
-                sys.exit(f"{path.name}: there is no table {name}; there are {', '.join(TABLES)}")
             found.add(name)
             return f"<!-- make.py {name} -->\n\n{TABLES[name](kinefront)}\n\n<!-- end -->"
 
         renewed = re.sub(r"<!-- make\.py (\w+) -->.*?<!-- end -->", renew, text, flags=re.S)
+        if path.stem in SESSIONS and is_asked(path.stem):
+            headings, other = SESSIONS[path.stem]
+            others = (FOLDER / f"{other}.md").read_text(encoding="utf-8") if other else ""
+            renewed = session(renewed, headings, others, kinefront)
+            found.add(path.stem)
         if renewed != text and arguments.check:
-            stale.append(f"{path.name}: a table is not current; run docs/make.py")
+            old, new = text.splitlines(), renewed.splitlines()
+            place = next((at for at, lines in enumerate(zip(old, new)) if lines[0] != lines[1]), min(len(old), len(new)))
+            stale.append(f"{path.name}, line {place + 1} is not current; run docs/make.py. It is now:\n{new[place]}")
         elif renewed != text:
             path.write_text(renewed, encoding="utf-8")
-    missing = set(arguments.names or TABLES) - found
+    missing = set(arguments.names or [*TABLES, *SESSIONS]) - found
     if missing:
-        stale.append(f"no document has the tables {', '.join(sorted(missing))}")
+        stale.append(f"no document has {', '.join(sorted(missing))}")
     if stale:
         sys.exit("\n".join(stale))
 

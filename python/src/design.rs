@@ -61,7 +61,7 @@ impl PyDesign {
     #[pyo3(signature = (grid="reference"))]
     fn evaluate<'py>(&self, py: Python<'py>, grid: &str) -> PyResult<Bound<'py, PyAny>> {
         let grid = grid_choice(grid)?;
-        let evaluation = py.detach(|| self.shared.model().evaluate(&self.design, grid));
+        let evaluation = py.detach(|| self.shared.model().evaluate_in_full(&self.design, grid));
         from_serializable(py, &EvaluationJson::new(&evaluation, self.shared.model()))
     }
 

@@ -84,6 +84,26 @@ impl<T> Given<T> {
     }
 }
 
+/// Refuses a column that differs from that of a dimension in its unit or in capital letters alone. Other columns, such as those of a table
+/// of results, are of no concern.
+fn refuse_misspelt(names: &[String]) -> PyResult<()> {
+    let plain = |name: &str| {
+        let name = name.to_lowercase();
+        let unit = ["_deg", "_rad", "_mm", "_m"].into_iter().find_map(|unit| name.strip_suffix(unit));
+        unit.unwrap_or(&name).replace('_', "")
+    };
+    let dimensions = DESIGN_VARIABLES.into_iter().chain(FURTHER_VARIABLES);
+    let known: Vec<String> = dimensions.map(|variable| Column::Dimension(variable).name().into_owned()).collect();
+    for name in names.iter().filter(|name| !known.contains(name)) {
+        // `R` and `r` differ in nothing else.
+        let meant = known.iter().find(|known| known.len() > 1 && plain(known) == plain(name));
+        if let Some(meant) = meant.filter(|meant| !names.contains(meant)) {
+            return Err(InputError::new_err(format!("the column `{name}` is not known; a dimension is `{meant}`")));
+        }
+    }
+    Ok(())
+}
+
 fn of_columns(study: &Study, given: &Bound<'_, PyAny>, names: &[String]) -> PyResult<Vec<Design>> {
     let mut texts: Vec<(Column, Given<String>)> = Vec::new();
     let mut numbers: Vec<(Column, Given<f64>)> = Vec::new();
@@ -113,6 +133,7 @@ fn of_columns(study: &Study, given: &Bound<'_, PyAny>, names: &[String]) -> PyRe
             numbers.push((column, values));
         }
     }
+    refuse_misspelt(names)?;
     if texts.iter().all(|(column, _)| *column != Column::Architecture) {
         let [only] = study.architectures[..] else {
             return Err(InputError::new_err(

@@ -34,7 +34,10 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
     if inspection.findings.is_empty() && !inspection.folder.is_verifiable() {
         let count = inspection.designs.as_ref().map_or(0, Vec::len);
         return Err(Failure::Runtime(miette!(
-            help = "kinefront optimize --resume --accept-unverified completes the run with these designs",
+            help = format!(
+                "`kinefront optimize --resume {} --accept-unverified` completes the run with these designs",
+                path.display()
+            ),
             "{} cannot be verified: its {count} designs follow from the study, but no file states their number and their \
              checksum ({}), so lost rows would go unnoticed",
             path.display(),
@@ -60,11 +63,12 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
         writeln!(out, "{}", shown(&line))?;
     }
     if !arguments.repair {
+        let folder = path.display();
         let message = match inspection.is_repairable() {
-            true => "kinefront check --repair repairs it",
-            false => "this cannot be repaired from the folder itself",
+            true => format!("`kinefront check {folder} --repair` repairs it"),
+            false => "this cannot be repaired from the folder itself".to_owned(),
         };
-        return Err(Failure::Input(miette!("{} is not sound; {message}", path.display())));
+        return Err(Failure::Input(miette!("{folder} is not sound; {message}")));
     }
     if !inspection.is_repairable() {
         return Err(Failure::Input(miette!(
@@ -94,7 +98,7 @@ fn soundness(path: &Path, inspection: &Inspection) -> String {
     let state = match (inspection.folder.report(), inspection.folder.checkpoint()) {
         (Some(report), _) if report.outcome == EndReason::Interrupted => "the run was interrupted and can be resumed",
         (Some(_), _) => "the run has ended",
-        (None, Some(_)) => "the run has not ended and can be resumed",
+        (None, Some(_)) => "the run has not ended: another process is searching, or it can be resumed",
         (None, None) => "it is not known whether the run has ended",
     };
     format!("{} is sound: {count} designs; {state}", path.display())

@@ -41,7 +41,7 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
         .map_err(Failure::runtime)?
         .with_all_quantities();
     let model = study.model();
-    let evaluation = model.evaluate(&design, grid);
+    let evaluation = model.evaluate_in_full(&design, grid);
     let mut out = std::io::stdout().lock();
     if arguments.json {
         let json = EvaluationJson::new(&evaluation, model).with_dynamics(model, &evaluation);

@@ -1,5 +1,6 @@
 //! The design in the arguments of a command, given as text or as a row of a table.
 
+use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
@@ -83,17 +84,26 @@ impl SubjectArguments {
             miette!("`{row}` does not specify a row; expected TABLE#ID, as in run/front.csv#12")
         })?;
         let row = row.display();
-        let study = study_of(table, self.study.as_deref())?;
-        let design = find_design(table, &study, &id).wrap_err_with(|| format!("cannot read {row}"))?;
-        Ok((study, design, format!("{}, design #{id}", study_name(table))))
+        let table = table_at(table);
+        let study = study_of(&table, self.study.as_deref())?;
+        let design = find_design(&table, &study, &id).wrap_err_with(|| format!("cannot read {row}"))?;
+        Ok((study, design, format!("{}, design #{id}", study_name(&table))))
     }
 
     /// Reads the study and all designs of a table, each with its id.
     pub fn read_table(&self) -> Result<(Study, Vec<(usize, Design)>)> {
-        let table = Path::new(self.row.as_deref().unwrap_or_default());
-        let study = study_of(table, self.study.as_deref())?;
-        let designs = designs_of(table, &study)?;
+        let table = table_at(Path::new(self.row.as_deref().unwrap_or_default()));
+        let study = study_of(&table, self.study.as_deref())?;
+        let designs = designs_of(&table, &study)?;
         Ok((study, designs))
+    }
+}
+
+/// Returns the table that is named: of a run folder, its front.
+fn table_at(path: &Path) -> Cow<'_, Path> {
+    match RunFolder::is_at(path) {
+        true => Cow::Owned(path.join("front.csv")),
+        false => Cow::Borrowed(path),
     }
 }
 

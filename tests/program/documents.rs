@@ -49,12 +49,17 @@ fn the_reference_of_keys_is_current() {
     );
 }
 
-/// The tables of the documents that follow from commands are what the commands print. By day, without those of whole searches.
+/// The tables of the documents that follow from commands are what the commands print, and so are the listings of the tutorial, whose
+/// commands all run in an empty folder. By day, without those of longer searches.
 #[test]
 fn the_tables_of_the_documents_are_current() {
     let Some(mut python) = python(&["json"]) else { return };
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/make.py");
-    let names: &[&str] = if is_thorough() { &[] } else { &["published", "studies"] };
+    let names: &[&str] = if is_thorough() {
+        &[]
+    } else {
+        &["published", "studies", "tutorial"]
+    };
     let program = ["--check", "--program", env!("CARGO_BIN_EXE_kinefront")];
     let output = python
         .arg(script)
@@ -77,35 +82,6 @@ fn keys_are_found_by_a_part() {
     assert!(!found.contains("density_kg_per_m3"), "{found}");
     let told = kinefront().args(["study", "keys", "torsion"]).assert().code(2);
     assert!(String::from_utf8_lossy(&told.get_output().stderr).contains("torsion"));
-}
-
-/// The tutorial, command by command, in an empty folder.
-#[test]
-fn the_tutorial_runs() {
-    let text = document("docs/tutorial.md");
-    let folder = folder();
-    for rest in text.split("<!-- file: ").skip(1) {
-        let (name, rest) = rest.split_once(" -->").expect("the end of a mark");
-        let contents = rest.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next());
-        fs::write(folder.path().join(name), contents.expect("a file")).expect("written");
-    }
-    let mut run = 0;
-    for command in commands(&text) {
-        if command.starts_with("kinefront explore") {
-            continue;
-        }
-        let words = words(&command);
-        let told = kinefront().current_dir(folder.path()).args(&words[1..]).assert();
-        let output = told.get_output();
-        assert!(
-            output.status.success(),
-            "{command}\n{}{}",
-            String::from_utf8_lossy(&output.stdout),
-            String::from_utf8_lossy(&output.stderr)
-        );
-        run += 1;
-    }
-    assert!(run >= 8, "only {run} commands");
 }
 
 /// Splits a command line at its spaces; quotation marks hold words together.

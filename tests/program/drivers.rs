@@ -363,11 +363,32 @@ fn keeps_its_identities(design: &serde_json::Value, architecture: &str) {
     let stiffness = price("k_xy_min") + price("k_z_min");
     let forces = price("E") + price("G") + price("K_act") + stiffness + price("k_phi_z_min");
     assert!(forces.abs() < 1e-7, "{architecture}: {forces}");
-    // The stiffness of an actuator that slides is a force over a length.
-    assert!(["3-PRR", "3-RPR"].contains(&architecture));
-    let lengths = price("K_act") + stiffness + 3.0 * price("k_phi_z_min") + price("workspace_radius") + bounds;
+    // The stiffness of an actuator that slides is a force over a length, that of one that turns a force times a length.
+    let of_actuators = match architecture {
+        "3-PRR" | "3-RPR" => 1.0,
+        "3-RRR" => 3.0,
+        other => panic!("{other}"),
+    };
+    let lengths =
+        of_actuators * price("K_act") + stiffness + 3.0 * price("k_phi_z_min") + price("workspace_radius") + bounds;
     assert!((lengths - 3.0).abs() < 1e-6, "{architecture}: {lengths}");
     assert!((price("density") - 1.0).abs() < 1e-9);
+}
+
+/// The critical poses of these designs lie in valleys that are parallel to no coordinate, or the legs are nearly stretched: prices need
+/// exact places there, and exact derivatives.
+#[test]
+fn prices_of_designs_with_flat_valleys_keep_the_identities() {
+    for dimensions in [
+        "R=1.050713370059659 r=0.1 Lb=0.5 rj=0.017079438655045076 rp=0.010682370272295945",
+        "R=1.6652717987588521 r=0.1 Lb=1.4286022016209872 rj=0.06445319678248854 rp=0.026919048037598467",
+        "R=1.8578058254040524 r=0.1 Lb=1.6041013829777744 rj=0.07329675865503613 rp=0.029401005682441285",
+    ] {
+        let drivers = json(["prices", "--design", &format!("3-RRR {dimensions}"), "--json"]);
+        let residual = drivers["residual"].as_f64().expect("a number");
+        assert!(residual < 1e-6, "{dimensions}: {residual}");
+        keeps_its_identities(&serde_json::json!({ "drivers": drivers }), "3-RRR");
+    }
 }
 
 /// Returns the evaluation of a design on the fine grid.

@@ -377,7 +377,7 @@ fn a_study_names_no_files_outside_its_folder() {
     checked(&study("../tubes.csv"), &["--outside-files"]).success();
     // What is in a file that is not a catalogue is not told.
     checked(&study("../secret.csv"), &["--outside-files"]).code(2).stderr(
-        contains("line 2 is not an entry")
+        contains("must name the columns")
             .and(contains("secret,of").not())
             .and(contains("another").not()),
     );

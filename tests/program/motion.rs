@@ -508,7 +508,7 @@ fn catalogues_of_drives_are_checked() {
         ),
         (
             format!("{slide}joint,rotary,1,2,3,0,1\n"),
-            "line 4 is not an entry of a catalogue; its columns, separated by commas, are name, kind",
+            "line 4 of motors.csv is not an entry of a catalogue; its columns, separated by commas, are name, kind",
         ),
         (
             format!("{slide}joint,revolute,9,2,3,0,1\n"),
@@ -522,7 +522,7 @@ fn catalogues_of_drives_are_checked() {
             format!("{slide}axis,revolute,1,2,3,0,1\n"),
             "`axis` is the name of two drives",
         ),
-        (String::new(), "has no entries"),
+        (String::new(), "it has no entry"),
     ] {
         check(&rows).code(2).stderr(contains(words).and(contains("catalogue")));
     }

@@ -7,6 +7,7 @@ use kinefront_study::RunFolder;
 use kinefront_testkit::poses_of_region;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
+use serde_json::Value;
 
 use super::support::{check, folder, front, json, kinefront, optimize, question, repetitions};
 
@@ -222,4 +223,62 @@ fn legs_in_layers_of_their_own_are_told() {
         .assert()
         .code(2)
         .stderr(contains("bodies.stacking").and(contains("chosen")));
+}
+
+/// A limit that a design misses is told with its value, and a refutation names what is missed and where.
+#[test]
+fn what_an_infeasible_design_misses_is_told() {
+    let folder = folder();
+    let study = folder.path().join("stiff.toml");
+    let text = "architectures = [\"3-PRR\"]\nobjectives = [{ minimize = \"mass_kg\" }]\n[constraints]\nnatural_frequency_hz = { at_least = 500 }\n\
+                [workspace.region]\nkind = \"rectangle\"\nwidth_m = 0.4\nheight_m = 0.3\n";
+    fs::write(&study, text).expect("a study");
+    let design = ["--design", "3-PRR R=1 r=0.2 Lb=0.7 rj=0.02 rp=0.03", "--study"];
+    let asked = |command: &str, more: &[&str]| {
+        let mut asked = kinefront();
+        asked
+            .arg(command)
+            .args(design)
+            .arg(&study)
+            .args(more)
+            .assert()
+            .success()
+    };
+    let told = asked("evaluate", &["--json"]);
+    let told: Value = serde_json::from_slice(&told.get_output().stdout).expect("JSON");
+    assert_eq!(told["feasible"], false);
+    let [limit] = told["limits"].as_array().expect("limits").as_slice() else {
+        panic!("{told}");
+    };
+    let (value, margin) = (&limit["value"], &limit["margin"]);
+    let (value, margin) = (value.as_f64().expect("a value"), margin.as_f64().expect("a margin"));
+    assert!(value > 1.0 && (margin - (value / 500.0 - 1.0)).abs() < 1e-9, "{limit}");
+    asked("evaluate", &[]).stdout(contains("Hz: missed"));
+    asked("certify", &[]).stdout(contains("it misses natural_frequency_hz").and(contains("home orientation")));
+    let certified = asked("certify", &["--json"]);
+    let certified: Value = serde_json::from_slice(&certified.get_output().stdout).expect("JSON");
+    assert_eq!(certified["verdict"], "refuted");
+}
+
+/// A study may leave no dimension free: each is a list.
+#[test]
+fn a_study_whose_dimensions_are_all_listed_is_searched() {
+    let folder = folder();
+    let study = folder.path().join("listed.toml");
+    let text = "architectures = [\"3-PRR\"]\nobjectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]\n\
+                [variables]\nR_m = [0.8, 1.0]\nr_m = [0.15, 0.2, 0.25]\nLb_m = [0.6, 0.7]\nrj_m = [0.015, 0.02, 0.025]\nrp_m = [0.02, 0.03]\n\
+                [workspace.region]\nkind = \"disc\"\nradius_m = 0.2\n[optimizer]\nevaluations = 60\n";
+    fs::write(&study, text).expect("a study");
+    let run = folder.path().join("run");
+    kinefront()
+        .args(["optimize", "--no-recording", "--quiet", "--out"])
+        .arg(&run)
+        .arg(&study)
+        .assert()
+        .success();
+    let front = fs::read_to_string(run.join("front.csv")).expect("a front");
+    assert!(front.lines().count() > 2, "{front}");
+    // A run folder stands for its front.
+    let best = format!("{}#best", run.display());
+    kinefront().args(["evaluate", &best]).assert().success();
 }

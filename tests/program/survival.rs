@@ -299,9 +299,9 @@ fn a_folder_is_taken_once() {
     assert!(child.try_wait().expect("a state").is_none());
     child.kill().expect("a signal");
     child.wait().expect("an end");
-    check(&run)
-        .success()
-        .stdout(contains("has not ended and can be resumed"));
+    check(&run).success().stdout(contains(
+        "has not ended: another process is searching, or it can be resumed",
+    ));
 }
 
 /// The recording can be left out or thinned; the tables do not change.

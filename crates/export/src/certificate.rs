@@ -44,7 +44,8 @@ pub struct CertificateJson {
     architecture: &'static str,
     design: DesignJson,
     working_mode: [i8; 3],
-    home: PoseJson,
+    /// The home pose.
+    pub home: PoseJson,
     /// The radius that was claimed.
     pub claimed_radius_m: f64,
     /// Radius of a disc that is proved, rounded down.
@@ -61,7 +62,8 @@ pub struct CertificateJson {
     /// The verdict that these two keys state.
     #[serde(skip)]
     pub found: Verdict,
-    violation: Option<ViolationJson>,
+    /// The pose at `upper_m`.
+    pub violation: Option<ViolationJson>,
     /// Number of boxes that were examined.
     pub boxes: usize,
     seconds: f64,
@@ -74,12 +76,15 @@ pub struct CertificateJson {
 
 /// A pose that is proved infeasible; `phi_rad` is the orientation of the proof.
 #[derive(Debug, Serialize)]
-struct ViolationJson {
+pub struct ViolationJson {
+    /// The pose.
     #[serde(flatten)]
-    pose: PoseJson,
+    pub pose: PoseJson,
     phi_rad: f64,
-    id: &'static str,
-    margin: f64,
+    /// The constraint or limit that the pose misses.
+    pub id: &'static str,
+    /// Its margin.
+    pub margin: f64,
 }
 
 impl CertificateJson {

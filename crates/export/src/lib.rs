@@ -69,7 +69,7 @@ impl Format {
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The design does not reach the pose.
-    #[error("the design does not reach the pose: {cause}")]
+    #[error("the design does not reach the pose, which is the home pose unless another one is given: {cause}")]
     Unreachable {
         /// The leg that does not reach the pose, and why.
         cause: Unreachable,

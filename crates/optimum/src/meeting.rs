@@ -1,6 +1,7 @@
 //! Where two optima meet: the value of a requirement at which a design of another kind becomes the better one.
 
 use kinefront_model::evaluation::Quantity;
+use kinefront_model::mechanism::Design;
 
 use super::parameter::Parameter;
 use super::polished::Polished;
@@ -8,6 +9,10 @@ use super::problem::LocalProblem;
 
 /// Accuracy of the logarithm of the requirement.
 const ACCURACY: f64 = 1e-9;
+
+/// Least logarithm by which each of two optima of one architecture is worse than the other at the other's requirement; otherwise the two
+/// are one optimum that was followed.
+const DIFFERENT: f64 = 1e-5;
 
 /// Largest number of secants.
 const SECANTS: usize = 40;
@@ -30,6 +35,10 @@ pub struct Meeting {
     pub at: f64,
     /// The objective of both.
     pub objective: f64,
+    /// The design of each of them.
+    pub designs: [Design; 2],
+    /// The home orientation of each of them \[rad\].
+    pub homes: [f64; 2],
     /// The price of the requirement at each of them.
     pub prices: [f64; 2],
 }
@@ -70,7 +79,7 @@ impl Branch<'_> {
 
 impl Meeting {
     /// Returns where two optima with the same objective meet, the first of which is the better one at its own requirement and the second at
-    /// its own; `None` if no such place was found between them, or as far beyond either.
+    /// its own; `None` if no such place was found between them, or, for two architectures, as far beyond either.
     pub fn of(branches: [Branch<'_>; 2]) -> Option<Self> {
         let [first, second] = [branches[0].place()?, branches[1].place()?];
         let sign = branches[0].problem.goal_sign();
@@ -88,11 +97,18 @@ impl Meeting {
         };
         let starts = [branches[0].optimum, branches[1].optimum];
         let width = second - first;
+        let is_one_architecture = starts[0].design.architecture() == starts[1].design.architecture();
         let mut near = both(starts, first)?;
+        if is_one_architecture && near.worse > -DIFFERENT {
+            return None;
+        }
         if near.worse > 0.0 {
             near = both([&near.optima[0], &near.optima[1]], first - width)?;
         }
         let mut far = both(starts, second)?;
+        if is_one_architecture && far.worse < DIFFERENT {
+            return None;
+        }
         if far.worse < 0.0 {
             far = both([&far.optima[0], &far.optima[1]], second + width)?;
         }
@@ -119,6 +135,8 @@ impl Meeting {
         Some(Self {
             at: libm::exp(near.at),
             objective: near.optima[0].objective,
+            designs: [near.optima[0].design, near.optima[1].design],
+            homes: [near.optima[0].home, near.optima[1].home],
             prices,
         })
     }

@@ -165,8 +165,12 @@ fn non_negative(columns: &DMatrix<f64>, gradient: &DVector<f64>) -> (Vec<f64>, f
     if !columns.iter().chain(gradient).all(|number| number.is_finite()) {
         return (vec![0.0; count], f64::MAX);
     }
-    if count == 0 {
-        return (Vec::new(), gradient.amax());
+    if count == 0 || rows == 0 {
+        // Where every dimension is listed, nothing is left to change.
+        return (
+            vec![0.0; count],
+            gradient.iter().fold(0.0, |most, part| most.max(part.abs())),
+        );
     }
     let lengths: Vec<f64> = columns
         .column_iter()

@@ -12,7 +12,7 @@ use super::problem::{LocalProblem, LocalQuestion};
 use super::requirement::{Critical, End, NOWHERE, Requirement};
 
 /// Half the step of a parameter by which the effects on the requirements are determined.
-const EFFECT_STEP: f64 = 3e-6;
+const EFFECT_STEP: f64 = 1e-6;
 
 /// Effects below this are rounding.
 const NO_EFFECT: f64 = 1e-9;

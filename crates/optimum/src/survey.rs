@@ -5,6 +5,7 @@ use kinefront_model::evaluation::PoseScalar;
 use kinefront_model::lanes::padded_length;
 use kinefront_model::spatial::LEGS;
 use kinefront_model::workspace::ValueColumns;
+use nalgebra::{DMatrix, DVector};
 
 use super::place::{Area, Density, Place, Spot, Spots};
 use super::prepared::Prepared;
@@ -37,6 +38,12 @@ pub(crate) const FOLLOWED: f64 = 0.02;
 
 /// Half the width of a parabola through values of a requirement.
 const PARABOLA: f64 = 1e-3;
+
+/// Largest distance of a vertex, as a multiple of that width.
+const NEARBY: f64 = 20.0;
+
+/// Number of times that a critical pose is moved to the vertex of a paraboloid.
+const VERTICES: usize = 3;
 
 impl LocalProblem {
     /// Returns the local minima of all requirements over the region.
@@ -157,33 +164,17 @@ impl LocalProblem {
         best
     }
 
-    /// Returns the minimum of a requirement at a place that is one already, with the place more exact: to the vertex of a parabola along
-    /// each coordinate. The values near a minimum are equal up to rounding, and a gradient at a place that is slightly off is off by as
-    /// much.
+    /// Returns the minimum of a requirement at a place that is one already, with the place more exact: to the vertex of a paraboloid
+    /// through values around it, twice. The values near a minimum are equal up to rounding, and a gradient at a place that is slightly off
+    /// is off by as much. All coordinates change together, because a valley may be parallel to none of them.
     pub(crate) fn sharpened(&self, prepared: &Prepared, from: &Critical) -> Critical {
         let requirement = from.requirement;
-        let freedoms = Area::freedoms(from.place.spot);
         let mut place = from.place;
-        for _ in 0..2 {
-            for freedom in 0..=freedoms {
-                let at = |way: f64| {
-                    let place = moved(prepared, place, freedom, freedoms, way)?;
-                    Some(self.value(prepared, requirement, &place)).filter(|value| *value > NOWHERE)
-                };
-                let (Some(below), Some(above)) = (at(-PARABOLA), at(PARABOLA)) else {
-                    continue;
-                };
-                let here = self.value(prepared, requirement, &place);
-                let bend = below - 2.0 * here + above;
-                // An end of a coordinate, or a kink, has no vertex.
-                let vertex = 0.5 * (below - above) / bend;
-                if bend > 0.0
-                    && vertex.abs() < 0.5
-                    && let Some(next) = moved(prepared, place, freedom, freedoms, vertex * PARABOLA)
-                {
-                    place = next;
-                }
-            }
+        for _ in 0..VERTICES {
+            let Some(next) = self.vertex(prepared, requirement, place) else {
+                break;
+            };
+            place = next;
         }
         let slack = self.value(prepared, requirement, &place);
         // Rounding aside, the vertex is no higher.
@@ -195,6 +186,43 @@ impl LocalProblem {
             },
             false => *from,
         }
+    }
+
+    /// Returns the vertex of the paraboloid through the values of a requirement around a place; `None` if there is none nearby. A
+    /// coordinate stays as it is at an end of its range and at a kink, where a parabola has no vertex.
+    fn vertex(&self, prepared: &Prepared, requirement: Requirement, place: Place) -> Option<Place> {
+        let freedoms = Area::freedoms(place.spot);
+        let shifted =
+            |place: Place, freedom: usize, way: f64| moved(prepared, place, freedom, freedoms, way * PARABOLA);
+        let at = |place: Place| Some(self.value(prepared, requirement, &place)).filter(|value| *value > NOWHERE);
+        let here = at(place)?;
+        let mut free: Vec<usize> = Vec::new();
+        let (mut slopes, mut bends): (Vec<f64>, Vec<f64>) = Default::default();
+        for freedom in 0..=freedoms {
+            let around = [-1.0, 1.0].map(|way| shifted(place, freedom, way).and_then(at));
+            let [Some(below), Some(above)] = around else { continue };
+            let (slope, bend) = (0.5 * (above - below), below - 2.0 * here + above);
+            if bend > 0.0 && slope.abs() < NEARBY * bend {
+                free.push(freedom);
+                slopes.push(slope);
+                bends.push(bend);
+            }
+        }
+        let mut matrix = DMatrix::from_diagonal(&DVector::from_column_slice(&bends));
+        for row in 0..free.len() {
+            for column in 0..row {
+                let corner = |a: f64, b: f64| at(shifted(shifted(place, free[row], a)?, free[column], b)?);
+                let twist = 0.25 * (corner(1.0, 1.0)? + corner(-1.0, -1.0)? - corner(1.0, -1.0)? - corner(-1.0, 1.0)?);
+                (matrix[(row, column)], matrix[(column, row)]) = (twist, twist);
+            }
+        }
+        let steps = matrix.cholesky()?.solve(&DVector::from_column_slice(&slopes));
+        if steps.amax() > NEARBY {
+            return None;
+        }
+        free.iter()
+            .zip(steps.iter())
+            .try_fold(place, |place, (freedom, step)| shifted(place, *freedom, -step))
     }
 }
 

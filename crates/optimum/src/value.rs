@@ -10,7 +10,7 @@ use super::problem::{LocalProblem, excess};
 use super::requirement::{Critical, End, NOWHERE, Requirement, threshold_name};
 
 /// Half the difference by which derivatives are taken.
-const DIFFERENCE: f64 = 2e-6;
+const DIFFERENCE: f64 = 1e-6;
 
 /// Half the difference of the unknowns by which a Hessian is determined.
 const BEND: f64 = 1e-4;

@@ -78,54 +78,9 @@ pub(super) fn send_design_layout(
     moves: bool,
 ) -> Result<(), ChunkError> {
     let mut layout = ViewLayout::new();
-    let mut maps = Vec::new();
-    let others = fields.iter().copied().filter(|&field| Some(field) != first);
-    for field in first.into_iter().chain(others) {
-        let key = field.key();
-        let mut contents = vec![
-            format!("+ {}/**", paths::MANIPULATOR),
-            format!("+ {}/**", paths::WORKSPACE),
-            format!("+ {}/{key}/**", paths::HEATMAP),
-            format!("+ {}/**", paths::LIMITS),
-            format!("+ {}/**", paths::PATH),
-        ];
-        // The heatmaps of in-plane stiffness and displacement also show the ellipsoids of that quantity.
-        match field {
-            Field::Scalar(PoseScalar::StiffnessXy) => contents.push(format!("+ {}/stiffness/**", paths::ELLIPSOIDS)),
-            Field::Scalar(PoseScalar::Displacement) => {
-                contents.push(format!("+ {}/displacement/**", paths::ELLIPSOIDS))
-            }
-            _ => {}
-        }
-        let contents: Vec<&str> = contents.iter().map(String::as_str).collect();
-        let title = field.title();
-        let title = title.split(" [").next().unwrap_or(key);
-        let map = layout.space(title, paths::DESIGN, &contents, extent)?;
-        maps.push(layout.beside_legend(map, title, field)?);
-    }
-    let contents = [paths::PROOF, paths::WORKSPACE, &format!("{}/base", paths::MANIPULATOR)];
-    let contents = contents.map(|path| format!("+ {path}/**"));
-    let proof = layout.view(
-        "3D",
-        "proof of the workspace",
-        paths::DESIGN,
-        &contents.each_ref().map(String::as_str),
-    )?;
-    layout.eye(&proof, [0.0, -0.7, 1.9], [0.0, -0.05, 0.0], extent)?;
-    maps.insert(if first.is_none() { 0 } else { maps.len() }, proof);
-    let mut maps = layout.container(ContainerKind::Tabs, &maps, &[])?;
+    let mut maps = layout.maps(extent, fields, first)?;
     if moves {
-        let others = MotionCurve::ALL
-            .into_iter()
-            .filter(|curve| *curve != MotionCurve::Force);
-        let mut curves = Vec::new();
-        for curve in std::iter::once(MotionCurve::Force).chain(others) {
-            let name = curve.name(JointKind::Prismatic);
-            let view = layout.curve(name, &curve_path(curve), "+ $origin/**")?;
-            layout.legend(&view)?;
-            curves.push(view);
-        }
-        let curves = layout.container(ContainerKind::Tabs, &curves, &[])?;
+        let curves = layout.motion_curves()?;
         maps = layout.container(ContainerKind::Vertical, &[maps, curves], &[2.2, 1.0])?;
     }
     let space = layout.configuration(extent)?;
@@ -346,6 +301,63 @@ impl ViewLayout {
     }
 
     /// Adds a view of the configuration space, seen from the side.
+    /// Adds the maps of some fields as tabs, with the proof of the workspace in front of them if none is first.
+    fn maps(&mut self, extent: f64, fields: &[Field], first: Option<Field>) -> Result<Node, ChunkError> {
+        let mut maps = Vec::new();
+        let others = fields.iter().copied().filter(|&field| Some(field) != first);
+        for field in first.into_iter().chain(others) {
+            let key = field.key();
+            let mut contents = vec![
+                format!("+ {}/**", paths::MANIPULATOR),
+                format!("+ {}/**", paths::WORKSPACE),
+                format!("+ {}/{key}/**", paths::HEATMAP),
+                format!("+ {}/**", paths::LIMITS),
+                format!("+ {}/**", paths::PATH),
+            ];
+            // The heatmaps of in-plane stiffness and displacement also show the ellipsoids of that quantity.
+            match field {
+                Field::Scalar(PoseScalar::StiffnessXy) => {
+                    contents.push(format!("+ {}/stiffness/**", paths::ELLIPSOIDS))
+                }
+                Field::Scalar(PoseScalar::Displacement) => {
+                    contents.push(format!("+ {}/displacement/**", paths::ELLIPSOIDS))
+                }
+                _ => {}
+            }
+            let contents: Vec<&str> = contents.iter().map(String::as_str).collect();
+            let title = field.title();
+            let title = title.split(" [").next().unwrap_or(key);
+            let map = self.space(title, paths::DESIGN, &contents, extent)?;
+            maps.push(self.beside_legend(map, title, field)?);
+        }
+        let contents = [paths::PROOF, paths::WORKSPACE, &format!("{}/base", paths::MANIPULATOR)];
+        let contents = contents.map(|path| format!("+ {path}/**"));
+        let proof = self.view(
+            "3D",
+            "proof of the workspace",
+            paths::DESIGN,
+            &contents.each_ref().map(String::as_str),
+        )?;
+        self.eye(&proof, [0.0, -0.7, 1.9], [0.0, -0.05, 0.0], extent)?;
+        maps.insert(if first.is_none() { 0 } else { maps.len() }, proof);
+        self.container(ContainerKind::Tabs, &maps, &[])
+    }
+
+    /// Adds the curves of a motion as tabs, those of the forces in front.
+    fn motion_curves(&mut self) -> Result<Node, ChunkError> {
+        let others = MotionCurve::ALL
+            .into_iter()
+            .filter(|curve| *curve != MotionCurve::Force);
+        let mut curves = Vec::new();
+        for curve in std::iter::once(MotionCurve::Force).chain(others) {
+            let name = curve.name(JointKind::Prismatic);
+            let view = self.curve(name, &curve_path(curve), "+ $origin/**")?;
+            self.legend(&view)?;
+            curves.push(view);
+        }
+        self.container(ContainerKind::Tabs, &curves, &[])
+    }
+
     fn configuration(&mut self, base_radius: f64) -> Result<Node, ChunkError> {
         let node = self.view(
             "3D",

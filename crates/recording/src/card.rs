@@ -1,7 +1,7 @@
 //! The numbers of a design as a card, in markdown.
 
 use kinefront_model::evaluation::{Evaluation, Model};
-use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
+use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignVariable};
 use kinefront_scene::text::{self, short};
 use kinefront_scene::{EllipsoidSet, Tour};
 use kinefront_study::{CertifiedWorkspace, Drivers};
@@ -45,29 +45,8 @@ pub(super) fn card(
     if let Some(certified) = certified {
         card += &format!("{}\n\n", certified);
     }
-    let variables: Vec<DesignVariable> = DESIGN_VARIABLES.into_iter().chain(design.given_variables()).collect();
-    card += "|";
-    card.extend(variables.iter().map(|variable| format!(" {} |", variable.symbol())));
-    card += "\n|";
-    card += &"---|".repeat(variables.len());
-    card += "\n|";
-    for variable in variables {
-        card += &format!(" {} |", text::variable_value(variable, design.value(variable)));
-    }
-    card += "\n\n| | constraint | smallest value | threshold | margin | |\n|---|---|---|---|---|---|\n";
-    for report in evaluation.constraints.iter().filter(|report| report.required) {
-        card += &format!(
-            "| {} | {} | {} {} | {} | {:+.1} % | {} |\n",
-            report.constraint.id(),
-            report.constraint.name().replace('_', " "),
-            report.value.map_or_else(|| "–".to_owned(), short),
-            report.constraint.unit(),
-            short(report.threshold),
-            100.0 * report.margin,
-            if report.active { "**active**" } else { "" },
-        );
-    }
-    card.push('\n');
+    card += &dimensions(design);
+    card += &constraints(evaluation);
     if let Some(nearest) = &evaluation.nearest {
         card += &format!("- smallest clearance between members: {}\n", text::clearance(nearest));
     }
@@ -92,6 +71,40 @@ pub(super) fn card(
     card + "\nwhite: regular workspace · magenta: threshold of the field · red: parallel singularity · orange edge: \
             end of a leg's reach (serial singularity) · grey edge: joint limit · red dots: poses at which the active \
             constraints have their smallest values\n"
+}
+
+/// Tabulates the dimensions of a design.
+fn dimensions(design: &Design) -> String {
+    let variables: Vec<DesignVariable> = DESIGN_VARIABLES.into_iter().chain(design.given_variables()).collect();
+    let mut card = "|".to_owned();
+    card.extend(variables.iter().map(|variable| format!(" {} |", variable.symbol())));
+    card += "\n|";
+    card += &"---|".repeat(variables.len());
+    card += "\n|";
+    for variable in variables {
+        card += &format!(" {} |", text::variable_value(variable, design.value(variable)));
+    }
+    card
+}
+
+/// Tabulates the constraints of a design.
+fn constraints(evaluation: &Evaluation) -> String {
+    let mut card =
+        "\n\n| | constraint | smallest value | threshold | margin | |\n|---|---|---|---|---|---|\n".to_owned();
+    for report in evaluation.constraints.iter().filter(|report| report.required) {
+        card += &format!(
+            "| {} | {} | {} {} | {} | {:+.1} % | {} |\n",
+            report.constraint.id(),
+            report.constraint.name().replace('_', " "),
+            report.value.map_or_else(|| "–".to_owned(), short),
+            report.constraint.unit(),
+            short(report.threshold),
+            100.0 * report.margin,
+            if report.active { "**active**" } else { "" },
+        );
+    }
+    card.push('\n');
+    card
 }
 
 /// Tabulates what drives the first objective of a design.

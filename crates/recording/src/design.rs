@@ -10,7 +10,8 @@ use super::{blueprint, motion, paths, timelines};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::Pose;
 use kinefront_scene::{
-    EllipsoidKind, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour, workspace_proof,
+    EllipsoidKind, EllipsoidSet, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour,
+    workspace_proof,
 };
 use kinefront_study::{CertifiedWorkspace, DesignProblem, Drivers, DriversOptions, PreparedStudy, Study, replace};
 
@@ -93,26 +94,9 @@ fn draw_design(
     let extent = subject.extent(poses);
     blueprint::send_design_layout(writer.stream(), extent, &fields, first, samples.is_some())?;
     let canvas = Canvas::at(&writer, ALWAYS);
-    let floor = subject.floor();
-    let home = subject.home();
-
-    let mut sets = Vec::new();
-    for kind in EllipsoidKind::ALL {
-        if let Some(set) = ellipsoids(model, evaluation, kind) {
-            let entity = format!("{}/{}", paths::ELLIPSOIDS, kind.key());
-            canvas.ellipsoids(&entity, &set, 0.0, subject.note())?;
-            sets.push(set);
-        }
-    }
-    for field in fields {
-        let heatmap = Heatmap::new(model, &evaluation.design, field, home.phi, FINE);
-        subject.heatmap(&canvas, &heatmap, floor)?;
-    }
-    subject.workspace(&canvas)?;
-    subject.configuration(&canvas)?;
-    subject.layers(&canvas, LAYER, true)?;
+    let sets = draw_standing(&subject, &canvas, fields)?;
     if let Some(proof) = &proof {
-        subject.proof(&canvas, proof, home.phi)?;
+        subject.proof(&canvas, proof, subject.home().phi)?;
         subject.proof_in_space(&canvas, proof)?;
     }
 
@@ -138,6 +122,31 @@ fn draw_design(
         ),
     )?;
     writer.close()
+}
+
+/// Draws what does not move: ellipsoids, heatmaps, workspace and layers. Returns the ellipsoids.
+fn draw_standing(
+    subject: &DrawnDesign<'_>,
+    canvas: &Canvas<'_>,
+    fields: Vec<Field>,
+) -> Result<Vec<EllipsoidSet>, RecordingError> {
+    let DrawnDesign { model, evaluation } = *subject;
+    let mut sets = Vec::new();
+    for kind in EllipsoidKind::ALL {
+        if let Some(set) = ellipsoids(model, evaluation, kind) {
+            let entity = format!("{}/{}", paths::ELLIPSOIDS, kind.key());
+            canvas.ellipsoids(&entity, &set, 0.0, subject.note())?;
+            sets.push(set);
+        }
+    }
+    for field in fields {
+        let heatmap = Heatmap::new(model, &evaluation.design, field, subject.home().phi, FINE);
+        subject.heatmap(canvas, &heatmap, subject.floor())?;
+    }
+    subject.workspace(canvas)?;
+    subject.configuration(canvas)?;
+    subject.layers(canvas, LAYER, true)?;
+    Ok(sets)
 }
 
 /// Returns what drives the first objective of a design, if an optimum is found near it.

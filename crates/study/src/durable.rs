@@ -74,11 +74,14 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), WriteError> {
 /// # Errors
 /// The error of `write`, or [`WriteError::Write`].
 pub fn replace<E: From<WriteError>>(path: &Path, write: impl FnOnce(&Path) -> Result<(), E>) -> Result<(), E> {
-    let place = tempfile::Builder::new()
-        .prefix(PREFIX)
-        .suffix(PARTIAL)
-        .tempdir_in(folder_of(path));
-    let place = place.map_err(WriteError::at(path))?;
+    let folder = folder_of(path);
+    let in_folder = |folder| {
+        tempfile::Builder::new()
+            .prefix(PREFIX)
+            .suffix(PARTIAL)
+            .tempdir_in(folder)
+    };
+    let place = existing(folder).and_then(in_folder).map_err(WriteError::at(path))?;
     let part = place.path().join(path.file_name().unwrap_or_default());
     write(&part)?;
     fs::rename(&part, path).map_err(WriteError::at(path))?;
@@ -92,6 +95,7 @@ const PARTIAL: &str = ".partial";
 
 /// Creates a temporary file that others may read, as far as the mask of the process allows.
 fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    existing(folder)?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).suffix(PARTIAL);
     #[cfg(unix)]
@@ -100,6 +104,17 @@ fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder)
+}
+
+/// Returns a folder if it exists: the error of a temporary file in one that does not would name that file.
+fn existing(folder: &Path) -> io::Result<&Path> {
+    let missing = || {
+        io::Error::new(
+            io::ErrorKind::NotFound,
+            format!("there is no folder {}", folder.display()),
+        )
+    };
+    if folder.is_dir() { Ok(folder) } else { Err(missing()) }
 }
 
 /// Moves a complete temporary file to its place.

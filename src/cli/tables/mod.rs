@@ -133,8 +133,8 @@ fn add_limits(facts: &mut Table, evaluation: &Evaluation) {
             format!("limit of {}", entry.label),
             match result.value {
                 Some(value) if result.margin >= 0.0 => format!("{} {limit}: kept", text::number(value)),
-                Some(value) => format!("{} {limit}: missed", text::number(value)),
-                // It is a value over the workspace, which an infeasible design does not have.
+                Some(value) => format!("{} {limit}: missed ({})", text::number(value), percent(result.margin)),
+                // No pose that is reached has one.
                 None => format!("{limit}: not evaluated"),
             },
         ]);
@@ -402,27 +402,34 @@ pub fn certificate(found: &CertificateJson) -> String {
         Verdict::OpenBudget => "open: the maximum number of boxes was reached",
         Verdict::OpenPrecision => "open: a constraint equals its threshold to the precision of a double",
     };
-    let upper = found
-        .upper_m
-        .map_or("no infeasible pose was found".to_owned(), |upper| {
-            format!("a pose at {upper:.6} m is proved infeasible")
-        });
     let homes = match found.upper_all_homes_m {
         Some(Some(bound)) => format!("\nR_w is at most {bound:.6} m at any home orientation"),
         Some(None) => "\nno bound over all home orientations was found".to_owned(),
         None => String::new(),
     };
-    if found.claim == "region" {
-        let infeasible = found.upper_m.map_or(String::new(), |upper| {
-            format!("\na pose of the region at {upper:.6} m from its centre is proved infeasible")
+    let of_region = found.claim == "region";
+    let infeasible = found.upper_m.map(|upper| {
+        let place = match of_region {
+            true => format!("a pose of the region at {upper:.6} m from its centre"),
+            false => format!("a pose at {upper:.6} m"),
+        };
+        let missed = found.violation.as_ref().map(|violation| {
+            let (pose, margin) = (&violation.pose, percent(violation.margin));
+            format!(
+                ": it misses {} (margin {margin}) at ({:.4}, {:.4}) m, {:.2}°",
+                violation.id, pose.x_m, pose.y_m, pose.phi_deg
+            )
         });
-        return format!(
-            "claim that every pose of the region is feasible: {verdict}{infeasible}\n{} boxes{homes}",
-            found.boxes
-        );
+        format!("{place} is proved infeasible{}", missed.unwrap_or_default())
+    });
+    let effort = format!("home orientation {}°, {} boxes{homes}", found.home.phi_deg, found.boxes);
+    if of_region {
+        let infeasible = infeasible.map_or(String::new(), |infeasible| format!("\n{infeasible}"));
+        return format!("claim that every pose of the region is feasible: {verdict}{infeasible}\n{effort}");
     }
+    let infeasible = infeasible.unwrap_or_else(|| "no infeasible pose was found".to_owned());
     format!(
-        "claimed R_w {:.6} m: {verdict}\nevery pose within {:.6} m is proved feasible; {upper}\n{} boxes{homes}",
-        found.claimed_radius_m, found.lower_m, found.boxes
+        "claimed R_w {:.6} m: {verdict}\nevery pose within {:.6} m is proved feasible; {infeasible}\n{effort}",
+        found.claimed_radius_m, found.lower_m
     )
 }

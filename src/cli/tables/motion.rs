@@ -3,7 +3,7 @@
 use comfy_table::Table;
 use kinefront_model::certify::MotionCertificate;
 use kinefront_model::dynamics::{Accuracy, DriveCatalogue, Motion, Response};
-use kinefront_model::evaluation::{PosedDynamics, ShortestCycle, TaskOutcome};
+use kinefront_model::evaluation::{PosedDynamics, ShortestCycle, TaskFigures, TaskOutcome};
 use kinefront_model::mechanism::{Design, JointKind};
 use kinefront_scene::text::{self, number};
 
@@ -134,6 +134,12 @@ pub fn task(
         let words = text::motion_proof(&proof, design.architecture().actuator());
         facts.add_row(["proof".to_owned(), words]);
     }
+    add_figures(&mut facts, figures);
+    format!("{facts}\n{}", drives_of_legs(design, figures))
+}
+
+/// Adds where the path lies, and the energy and the power of all drives.
+fn add_figures(facts: &mut Table, figures: &TaskFigures) {
     let inside = if figures.inside_workspace { "yes" } else { "no" };
     facts.add_row(["inside the workspace".to_owned(), inside.to_owned()]);
     facts.add_row([
@@ -156,6 +162,10 @@ pub fn task(
     ] {
         facts.add_row([name.to_owned(), format!("{} {unit}", number(value))]);
     }
+}
+
+/// Tabulates what the motion asks of the drive of each leg.
+fn drives_of_legs(design: &Design, figures: &TaskFigures) -> Table {
     let actuator = design.architecture().actuator();
     let (unit, effort) = (actuator.unit(), actuator.effort_unit());
     let columns = [
@@ -181,5 +191,5 @@ pub fn task(
         ];
         drives.add_row([vec![(leg + 1).to_string()], values.map(number).to_vec()].concat());
     }
-    format!("{facts}\n{drives}")
+    drives
 }

@@ -15,7 +15,7 @@ use kinefront_export::Format;
 const FILE_ENTRIES: [(&str, Purpose); 10] = [
     ("Open… (Ctrl+O)", Purpose::Open),
     ("Open run folder…", Purpose::OpenFolder),
-    ("Open run beside…", Purpose::OpenBeside),
+    ("Compare with run…", Purpose::OpenBeside),
     ("Save recording… (Ctrl+S)", Purpose::SaveRecording),
     ("Save run folder…", Purpose::SaveRun),
     ("Save study…", Purpose::SaveStudy),

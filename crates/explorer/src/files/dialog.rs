@@ -52,7 +52,7 @@ impl Purpose {
                 &[("studies, recordings, tables", &["toml", "rrd", "csv"])],
             ),
             Purpose::OpenFolder => ("Open a run folder", "", &[]),
-            Purpose::OpenBeside => ("Open a run folder beside the run", "", &[]),
+            Purpose::OpenBeside => ("Open a run folder to compare it with this run", "", &[]),
             Purpose::SaveStudy => ("Save the study", "study.toml", &[("study", &["toml"])]),
             Purpose::SaveRecording => ("Save the recording", "session.rrd", &[("recording", &["rrd"])]),
             Purpose::SaveRun => ("Save the run folder", "run", &[]),

@@ -18,7 +18,7 @@ impl BesidePanel {
             ui.weak(
                 "Open another run with the same objectives to draw both fronts in the scatter and compare them here.",
             );
-            if ui.button("Open run beside…").clicked() {
+            if ui.button("Compare with run…").clicked() {
                 session.request_file(Purpose::OpenBeside);
             }
             return;
@@ -26,7 +26,7 @@ impl BesidePanel {
         let name = beside.name.clone();
         let close = ui
             .horizontal(|ui| {
-                ui.label(RichText::new(format!("{} beside {name}", session.study().name)).strong());
+                ui.label(RichText::new(format!("{} and {name}", session.study().name)).strong());
                 named(ui.small_button("×"), &format!("Close {name}")).clicked()
             })
             .inner;

@@ -204,7 +204,7 @@ panels! {
     /// Pinned designs side by side.
     Compare = compare: compare::ComparePanel, "Compare", Designs;
     /// The front beside that of another run.
-    Beside = beside: beside::BesidePanel, "Beside", Designs;
+    Beside = beside: beside::BesidePanel, "Second run", Designs;
 }
 
 impl Panels {

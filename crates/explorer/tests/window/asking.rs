@@ -182,7 +182,7 @@ fn a_second_run_is_compared_with_the_first() {
         .act(&ctx, kinefront_explorer::Purpose::OpenBeside, path);
     window.state_mut().show(Panel::Beside);
     window.run_steps(4);
-    assert!(told(&window, "small beside softer").is_some());
+    assert!(told(&window, "small and softer").is_some());
     assert!(window.query_by_label("material.youngs_modulus_pa").is_some());
     let levels = window.state().session().levels_beside();
     let both: Vec<[f64; 2]> = levels

@@ -51,9 +51,9 @@ fn three_objectives_have_axes_colour_buttons_and_a_space_that_is_clicked() {
     window.run_steps(3);
     for (button, quantity, largest) in [
         ("Lightest", Column::Quantity(Quantity::Mass), false),
-        ("Most k_xy", k_xy, true),
+        ("Largest k_xy", k_xy, true),
         (
-            "Least footprint",
+            "Smallest footprint",
             Column::Quantity(Quantity::Worst(PoseScalar::Footprint)),
             false,
         ),
@@ -105,7 +105,7 @@ fn one_objective_has_a_single_best_design() {
     assert_eq!(window.state().session().front().len(), 1);
     window.state_mut().show(Panel::Choose);
     window.run_steps(3);
-    window.get_by_label("Least mass of the platform").click();
+    window.get_by_label("Smallest mass of the platform").click();
     window.run_steps(3);
     assert!(window.state().session().document().selected.is_some());
 }

@@ -57,7 +57,7 @@ impl Default for DriveCatalogue {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DriveCatalogueError {
     /// There is none.
-    #[error("has no entries; a catalogue needs at least one drive")]
+    #[error("it has no entry; it must have at least one drive")]
     Empty,
     /// A drive has a number that no drive has.
     #[error(

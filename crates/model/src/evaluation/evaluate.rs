@@ -1,12 +1,15 @@
 //! The one call by which all other code evaluates a design.
 
 use super::worst::ConstraintSearch;
-use super::{Constraint, Evaluation, GridChoice, LimitResult, Model, Quantity, SelectedDrive, quantities};
+use super::{
+    Constraint, Evaluation, GridChoice, LimitResult, Model, Quantity, QuantityLimit, QuantityValues, SelectedDrive,
+    quantities,
+};
 use crate::lanes::InstructionSet;
 use crate::mechanism::{Design, Leg};
 use crate::pose::{EXAMINED_ALWAYS, PoseChecker, PoseScalar, Thresholds};
 use crate::spatial::Pose;
-use crate::workspace::{Region, WorkspaceSampling, search, search_prescribed};
+use crate::workspace::{Region, RegularWorkspace, WorkspaceSampling, search, search_prescribed};
 
 impl Model {
     /// Evaluates a design on one of the grids.
@@ -19,18 +22,31 @@ impl Model {
         with_leg!(design.architecture(), L => {
             let mut checker = self.checker::<L>(design);
             checker.instructions = instructions;
-            evaluate(self, &checker, design, self.sampling(grid))
+            evaluate(self, &checker, design, self.sampling(grid)).0
+        })
+    }
+
+    /// Evaluates a design like [`Model::evaluate`], and determines the values of an infeasible design that are limited, which tell a person
+    /// what is wrong: over a prescribed region in the best home orientation, otherwise at the pose at which the constraints are reported.
+    pub fn evaluate_in_full(&self, design: &Design, grid: GridChoice) -> Evaluation {
+        with_leg!(design.architecture(), L => {
+            let checker = self.checker::<L>(design);
+            let (mut evaluation, found) = evaluate(self, &checker, design, self.sampling(grid));
+            if !evaluation.is_feasible() {
+                quantities::add_to_limits(&mut evaluation, self, &checker, &found);
+            }
+            evaluation
         })
     }
 }
 
-/// Evaluates the design that is prepared in `checker`.
+/// Evaluates the design that is prepared in `checker`, and returns the workspace that was searched, too.
 fn evaluate<L: Leg>(
     model: &Model,
     checker: &PoseChecker<L>,
     design: &Design,
     sampling: &WorkspaceSampling,
-) -> Evaluation {
+) -> (Evaluation, RegularWorkspace) {
     let symmetric = model.is_symmetric_in(design, checker.bodies.stack().order);
     let (found, worst) = match sampling.spec().region {
         Region::Largest => (search(checker, sampling, design.base_radius(), symmetric), None),
@@ -78,23 +94,17 @@ fn evaluate<L: Leg>(
         let frame = model.task_frame(design, workspace_radius, home_phi_deg);
         drive = quantities::add_of_task(&mut quantities, model, design, &frame);
     }
-    let mut limits: Vec<LimitResult> = model
-        .settings()
-        .limits
-        .iter()
-        .filter(|limit| limit.quantity.is_of(design))
-        .map(|limit| limit.result(quantities.get(limit.quantity)))
-        .collect();
-    violation += limits.iter().map(|limit| (-limit.margin).max(0.0)).sum::<f64>();
-    // The search of the region has counted what these are violated by.
-    let of_poses = model.limits_of_poses(design);
-    limits.extend(of_poses.map(|limit| limit.result(quantities.get(limit.quantity))));
+    let (limits, violation_of_limits) = results_of_limits(model, design, &quantities);
+    violation += violation_of_limits;
     let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
     let centre = model.settings().workspace.centre;
-    Evaluation {
+    let pose_at = |phi_deg: f64| Pose::new(centre.x, centre.y, phi_deg.to_radians());
+    let reported = found.home.filter(|_| home.is_none() && worst.is_some());
+    let evaluation = Evaluation {
         design: *design,
-        home: home_phi_deg.map(|phi_deg| Pose::new(centre.x, centre.y, phi_deg.to_radians())),
+        home: home_phi_deg.map(pose_at),
         home_phi_deg,
+        reported_home: reported.map(|home| pose_at(found.orientations[home].phi_deg)),
         nearest: constraints[Constraint::Clearance as usize]
             .pose
             .and_then(|pose| reporter.nearest(pose)),
@@ -109,7 +119,20 @@ fn evaluate<L: Leg>(
         quantities,
         limits,
         violation,
-    }
+    };
+    (evaluation, found)
+}
+
+/// Returns the results of the limits that the study states, and by how much those of the design as a whole are violated. The search of
+/// the region has counted what the others are violated by.
+fn results_of_limits(model: &Model, design: &Design, quantities: &QuantityValues) -> (Vec<LimitResult>, f64) {
+    let result = |limit: QuantityLimit| limit.result(quantities.get(limit.quantity));
+    let stated = model.settings().limits.iter().copied();
+    let of_designs = stated.filter(|limit| limit.quantity.is_of(design));
+    let mut limits: Vec<LimitResult> = of_designs.map(result).collect();
+    let violation = limits.iter().map(|limit| (-limit.margin).max(0.0)).sum();
+    limits.extend(model.limits_of_poses(design).map(result));
+    (limits, violation)
 }
 
 /// Returns the scalar of the first objective whose value the search of a prescribed region knows at every pose that it examines.

@@ -58,6 +58,8 @@ pub struct Evaluation {
     /// Place of the drive that the design selects from the catalogue of the study; `None` without a catalogue, and if no drive carries the
     /// motion.
     pub drive: Option<usize>,
+    /// Home pose in which the constraints of an infeasible design are reported over a prescribed region; `None` otherwise.
+    pub reported_home: Option<Pose>,
     /// Reports of the constraints, in the order of [`Constraint::ALL`].
     pub constraints: [ConstraintResult; Constraint::COUNT],
     /// Quantities: those that an evaluation always determines, and those that the study asks for.

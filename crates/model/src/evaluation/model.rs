@@ -495,11 +495,12 @@ impl Model {
         }
     }
 
-    /// Returns the home pose of an evaluated design; for an infeasible design, the pose at which its constraints are
+    /// Returns the home pose of an evaluated design; for an infeasible design, the home pose or the pose at which its constraints are
     /// reported.
     pub fn home(&self, evaluation: &Evaluation) -> Pose {
         let reported = || evaluation.constraints.iter().find_map(|report| report.pose);
-        evaluation.home.or_else(reported).unwrap_or(Pose {
+        let home = evaluation.home.or(evaluation.reported_home);
+        home.or_else(reported).unwrap_or(Pose {
             position: self.settings.workspace.centre,
             phi: 0.0,
         })

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::{
-    Constraint, ConstraintResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive, TaskOutcome,
-    largest_of_legs,
+    Constraint, ConstraintResult, Evaluation, LimitResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive,
+    TaskOutcome, largest_of_legs,
 };
 use crate::dynamics::TaskFrame;
 use crate::mechanism::{Design, Leg};
@@ -94,6 +94,55 @@ pub(super) fn add_of_region<L: Leg>(
     for scalar in set.iter() {
         let value = scalar.entry().quantity.better.sign() * least[scalar as usize];
         values.set(Quantity::Worst(scalar), Some(value));
+    }
+}
+
+/// Adds the values of the limits of an infeasible design that have none: the worst over a prescribed region in the best home orientation, or
+/// the value at the pose at which the constraints are reported. A scalar without a value at any pose stays without one.
+pub(super) fn add_to_limits<L: Leg>(
+    evaluation: &mut Evaluation,
+    model: &Model,
+    checker: &PoseChecker<L>,
+    found: &RegularWorkspace,
+) {
+    let scalar_of = |limit: &LimitResult| match (limit.value, limit.limit.quantity) {
+        (None, Quantity::Worst(scalar)) => Some(scalar),
+        _ => None,
+    };
+    let set: ScalarSet = evaluation.limits.iter().filter_map(scalar_of).collect();
+    let mut positions = Positions::default();
+    let orientations: Vec<usize> = match found.home {
+        Some(home) if !found.samples.is_empty() => {
+            positions.extend(&found.samples);
+            found.orientation_grid.window(home).collect()
+        }
+        _ => {
+            positions.push(model.settings().workspace.centre);
+            let pose = evaluation.constraint(Constraint::Reach).pose;
+            let is_reported = |index: &usize| {
+                let phi = found.orientations[*index].phi_deg.to_radians();
+                pose.is_some_and(|pose| (phi - pose.phi).abs() < 1e-9)
+            };
+            (0..found.orientations.len()).find(is_reported).into_iter().collect()
+        }
+    };
+    positions.pad();
+    let indices = positions.indices();
+    let mut least = [f64::INFINITY; PoseScalar::COUNT];
+    for index in orientations {
+        let arms = &found.orientations[index].arms;
+        let minima = checker.worst(set, arms, &positions.xs, &positions.ys, &indices);
+        for (least, minimum) in least.iter_mut().zip(minima) {
+            *least = least.min(minimum.value);
+        }
+    }
+    for limit in &mut evaluation.limits {
+        if let Some(scalar) = scalar_of(limit)
+            && least[scalar as usize].is_finite()
+        {
+            let value = scalar.entry().quantity.better.sign() * least[scalar as usize];
+            *limit = limit.limit.result(Some(value));
+        }
     }
 }
 

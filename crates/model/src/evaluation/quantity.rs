@@ -346,8 +346,8 @@ impl Objective {
         let short = self.quantity.entry().short;
         match (self.superlative(), self.goal) {
             (Some(word), _) => word.to_owned(),
-            (None, Better::Lower) => format!("least {short}"),
-            (None, Better::Higher) => format!("most {short}"),
+            (None, Better::Lower) => format!("smallest {short}"),
+            (None, Better::Higher) => format!("largest {short}"),
         }
     }
 

@@ -38,11 +38,11 @@ pub struct Catalogue(Vec<CatalogueEntry>);
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CatalogueError {
     /// There is no entry.
-    #[error("it has no entry; it must have at least one")]
+    #[error("it has no entry; it must have at least one bar")]
     Empty,
     /// A number is not positive, or the wall is thicker than the outer radius.
     #[error(
-        "`{0}` has an invalid outer radius, wall or mass: all must be above 0, and the wall at most the outer radius"
+        "`{0}` has an invalid outer size, wall or mass: all must be above 0, and the wall at most half the outer size"
     )]
     NoBar(String),
     /// Two entries have one outer radius, which is all that a design states.

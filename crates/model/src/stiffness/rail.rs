@@ -254,7 +254,7 @@ mod tests {
         }
     }
 
-    /// Deflections in the middle of a span: `FL³/192EI` if it is clamped, `FL³/48EI` if it is pinned; supports do not yield.
+    /// Deflections in the middle of a span: `FL³/192EI` if it is clamped, `FL³/48EI` if it is pinned; supports are rigid.
     #[test]
     fn rails_have_the_deflections_of_beam_tables() {
         let beam = |supports| RailBeam {

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::percent;
-use crate::{Report, best_intervals};
+use crate::{Fronts, Question, Report, best_intervals};
 use kinefront_model::mechanism::Architecture;
 use kinefront_scene::text::{self, number, short};
 
@@ -31,7 +31,7 @@ pub(super) fn comparison(report: &Report) -> Markup {
     // Of many architectures, most are nowhere the best.
     let is_shown = |(_, fraction): &&(Architecture, f64)| fractions.len() <= FEW || *fraction > 0.0;
     let shown: Vec<(Architecture, f64)> = fractions.iter().filter(is_shown).copied().collect();
-    let (cost, name, bound) = (question.name(0), question.name(1), question.bound(1));
+    let (cost, name) = (question.name(0), question.name(1));
     let unit = question.unit(1);
     html! {
         ul.facts {
@@ -58,6 +58,14 @@ pub(super) fn comparison(report: &Report) -> Markup {
                 "."
             }
         }
+        (at_levels(fronts, question))
+    }
+}
+
+/// Tabulates the best first objective of each architecture at some values of the second one.
+fn at_levels(fronts: &Fronts, question: &Question) -> Markup {
+    let (name, bound) = (question.name(1), question.bound(1));
+    html! {
         div.scroll { table {
             caption {
                 "Best " (question.label(0)) " of the designs found whose " (name) " is " (bound) " the given one, verified "

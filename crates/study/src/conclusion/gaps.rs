@@ -13,6 +13,9 @@ const AT_ONCE: usize = 16;
 /// Number of evaluations of the search for which one design is looked for, so that a short search has a short end.
 const EVALUATIONS: usize = 3;
 
+/// Number of designs that are looked for at most if fewer are reported: the gap beside an end is known only once the end is.
+const FEWEST: usize = 16;
+
 /// Number of designs that are looked for in gaps for one beyond the boundary of a family.
 const OF_GAPS: usize = 4;
 
@@ -59,10 +62,10 @@ impl Settling<'_> {
         Some(())
     }
 
-    /// Number of designs that are looked for at most: no more than are reported, and no more than a third of the evaluations.
+    /// Number of designs that are looked for at most: as many as are reported, and no more than a third of the evaluations.
     pub(super) fn most_wanted(&self) -> usize {
         let most = self.search.study().optimizer.front_designs;
-        most.min(self.search.found.evaluated / EVALUATIONS)
+        most.max(FEWEST).min(self.search.found.evaluated / EVALUATIONS)
     }
 
     /// Verifies and proves the optima for some aims, each with the design to start from as a place in `held`, that add something to the

@@ -6,7 +6,7 @@ use kinefront_optimum::ParameterKind;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::crossings::{Crossing, CrossingJson};
+use super::crossings::{Crossing, CrossingJson, Placed};
 use super::{Drivers, DriversOptions};
 use crate::DesignProblem;
 
@@ -25,7 +25,8 @@ pub struct DriversAlong {
     pub along: Quantity,
     /// Each design that has prices: its index among the evaluations that were given, its value of that quantity, and its drivers.
     pub designs: Vec<(usize, f64, Drivers)>,
-    /// Where other architectures take over from this one, and this one from others, in the order of their places.
+    /// Where other architectures take over from this one, this one from others, and one of its families from another, in the order of their
+    /// places.
     pub crossings: Vec<Crossing>,
     /// Number of designs that have no prices.
     pub without: usize,
@@ -64,14 +65,20 @@ impl DesignProblem {
             return Vec::new();
         };
         let along = &objectives[place];
-        let found: Vec<Option<Drivers>> = evaluations
+        let found: Vec<Option<(Placed<'_>, Drivers)>> = evaluations
             .par_iter()
             .map(|evaluation| {
                 let local = self.local_of(evaluation, &[]).ok()?;
                 // A design of a front has its optimum near its own home orientation; a search of all others would take a second.
                 let optimum = local.optimum()?;
                 let drivers = local.drivers_of(&local.problem, &optimum, DriversOptions::default());
-                Some(drivers).filter(|drivers| !drivers.prices.is_empty())
+                let placed = Placed {
+                    at: along.value(evaluation.objectives[place]),
+                    evaluation,
+                    local,
+                    optimum,
+                };
+                (!drivers.prices.is_empty()).then_some((placed, drivers))
             })
             .collect();
         let has_designs = |architecture: &&Architecture| {
@@ -86,25 +93,20 @@ impl DesignProblem {
             without: 0,
         };
         let mut fronts: Vec<DriversAlong> = Architecture::ALL.iter().filter(has_designs).map(front).collect();
-        for (index, (evaluation, drivers)) in evaluations.iter().zip(found).enumerate() {
+        let crossings = self.crossings(found.iter().flatten().map(|(placed, _)| placed).collect());
+        for (index, (evaluation, found)) in evaluations.iter().zip(found).enumerate() {
             let is_own = |front: &&mut DriversAlong| front.architecture == evaluation.design.architecture();
             let Some(front) = fronts.iter_mut().find(is_own) else {
                 continue;
             };
-            match drivers {
-                Some(drivers) => {
-                    let at = along.value(evaluation.objectives[place]);
-                    front.designs.push((index, at, drivers));
-                }
+            match found {
+                Some((placed, drivers)) => front.designs.push((index, placed.at, drivers)),
                 None => front.without += 1,
             }
         }
         for front in &mut fronts {
             front.designs.sort_by(|a, b| a.1.total_cmp(&b.1));
         }
-        let places = fronts.iter().flat_map(|front| &front.designs);
-        let places = places.map(|(index, at, _)| (*at, &evaluations[*index]));
-        let crossings = self.crossings(places.collect());
         for front in &mut fronts {
             let own = crossings.iter().filter(|crossing| crossing.is_of(front.architecture));
             front.crossings.extend(own);
@@ -207,10 +209,10 @@ impl DriversAlong {
         });
         let crossings = self.crossings.iter().map(|crossing| {
             let entry = self.along.entry();
-            let ([before, after], [below, above]) = (crossing.architectures, crossing.prices);
+            let (change, [below, above]) = (crossing.change(), crossing.prices);
             format!(
-                "The {after} takes over from the {before} at {} {:.4} {}: an increase of this value by 1 % changes the {objective} by {below:+.2} % \
-                 just below it and by {above:+.2} % just above it.",
+                "{change} at {} {:.4} {}: an increase of this value by 1 % changes the {objective} by {below:+.2} % just below it and by {above:+.2} % \
+                 just above it.",
                 entry.short, crossing.at, entry.unit
             )
         });
@@ -293,7 +295,7 @@ pub struct AlongJson<'a> {
     pub designs: Vec<PricedDesignJson<'a>>,
     /// Number of designs that have no prices.
     pub without_prices: usize,
-    /// Where the best architecture changes.
+    /// Where the best architecture or the best family of designs changes.
     pub crossings: Vec<CrossingJson>,
 }
 

@@ -73,6 +73,8 @@ pub const CATALOGUES: [BuiltinCatalogue; 1] = [BuiltinCatalogue {
 
 impl CatalogueItem for CatalogueRow {
     const COLUMNS: &'static str = "name, outer_mm, wall_mm and, if known, kg_per_m";
+    const REQUIRED: &'static [&'static str] = &["name", "outer_mm", "wall_mm"];
+    const OPTIONAL: &'static [&'static str] = &["kg_per_m"];
     const BUILTIN: &'static [BuiltinCatalogue] = &CATALOGUES;
 
     fn name(&self) -> &str {

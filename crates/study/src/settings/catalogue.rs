@@ -15,6 +15,10 @@ use kinefront_model::mechanism::CatalogueError;
 pub trait CatalogueItem: Clone + DeserializeOwned {
     /// The columns of a CSV file, in words.
     const COLUMNS: &'static str;
+    /// Names of those that a file must have.
+    const REQUIRED: &'static [&'static str];
+    /// Names of those that a file may have.
+    const OPTIONAL: &'static [&'static str] = &[];
     /// The catalogues of such entries that come with the program.
     const BUILTIN: &'static [BuiltinCatalogue];
 
@@ -59,21 +63,33 @@ pub enum CatalogueFault {
     )]
     Outside,
     /// A line is not an entry of a catalogue.
-    #[error("line {line} is not an entry of a catalogue; its columns, separated by commas, are {columns}")]
+    #[error(
+        "is wrong: line {line} of {file} is not an entry of a catalogue; its columns, separated by commas, are {columns}"
+    )]
     Row {
+        /// The file, or the name of the catalogue.
+        file: String,
         /// The line.
         line: u64,
         /// The columns.
         columns: &'static str,
     },
+    /// The first line does not name the columns.
+    #[error("is wrong: the first line of {file} must name the columns, separated by commas: {columns}")]
+    Header {
+        /// The file, or the name of the catalogue.
+        file: String,
+        /// The columns.
+        columns: &'static str,
+    },
     /// The name of an entry is wrong.
-    #[error("line {0}: the name {1}")]
+    #[error("is wrong: the name in line {0} {1}")]
     Name(u64, String),
     /// The entries do not form a catalogue of bars.
-    #[error(transparent)]
+    #[error("is wrong: {0}")]
     Bars(#[from] CatalogueError),
     /// The entries do not form a catalogue of drives.
-    #[error(transparent)]
+    #[error("is wrong: {0}")]
     Drives(#[from] DriveCatalogueError),
 }
 
@@ -113,7 +129,7 @@ impl<Item: CatalogueItem> CatalogueChoice<Item> {
         match self {
             Self::Rows(rows) => Ok(rows.clone()),
             Self::Named(name) => match builtin::<Item>(name) {
-                Some(builtin) => rows(builtin.text),
+                Some(builtin) => rows(builtin.text, name),
                 None => read_rows(Path::new(""), name, FileScope::BesideStudy),
             },
         }
@@ -127,28 +143,33 @@ fn builtin<Item: CatalogueItem>(name: &str) -> Option<&'static BuiltinCatalogue>
 /// Largest catalogue \[bytes\].
 const LARGEST_CATALOGUE: u64 = 1 << 20;
 
-fn rows<Item: CatalogueItem>(text: &str) -> Result<Vec<Item>, CatalogueFault> {
+fn rows<Item: CatalogueItem>(text: &str, file: &str) -> Result<Vec<Item>, CatalogueFault> {
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let columns = Item::COLUMNS;
-    let headers = reader
-        .headers()
-        .map_err(|_| CatalogueFault::Row { line: 1, columns })?
-        .clone();
+    let wrong_header = || CatalogueFault::Header {
+        file: file.to_owned(),
+        columns,
+    };
+    let headers = reader.headers().map_err(|_| wrong_header())?.clone();
+    let is_named = |column: &&str| headers.iter().any(|header| header == *column);
+    let is_known = |header: &str| Item::REQUIRED.contains(&header) || Item::OPTIONAL.contains(&header);
+    if !Item::REQUIRED.iter().all(is_named) || !headers.iter().all(is_known) {
+        return Err(wrong_header());
+    }
     let mut rows = Vec::new();
     for record in reader.into_records() {
         // What is in a file that is not a catalogue is not told.
-        let at = |error: csv::Error| CatalogueFault::Row {
-            line: error.position().map_or(1, |position| position.line()),
+        let wrong = |line: u64| CatalogueFault::Row {
+            file: file.to_owned(),
+            line,
             columns,
         };
-        let record = record.map_err(at)?;
+        let record = record.map_err(|error| wrong(error.position().map_or(1, |position| position.line())))?;
         let line = record.position().map_or(1, |position| position.line());
-        let row: Item = record
-            .deserialize(Some(&headers))
-            .map_err(|_| CatalogueFault::Row { line, columns })?;
+        let row: Item = record.deserialize(Some(&headers)).map_err(|_| wrong(line))?;
         if let Some(message) = wrong_name(row.name()) {
             return Err(CatalogueFault::Name(line, message));
         }
@@ -182,6 +203,7 @@ fn read_rows<Item: CatalogueItem>(folder: &Path, name: &str, scope: FileScope) -
         }
     }
     let text = read_regular(&path, LARGEST_CATALOGUE).map_err(unreadable)?;
-    let columns = Item::COLUMNS;
-    rows(&String::from_utf8(text).map_err(|_| CatalogueFault::Row { line: 1, columns })?)
+    let (file, columns) = (name.to_owned(), Item::COLUMNS);
+    let text = String::from_utf8(text).map_err(|_| CatalogueFault::Header { file, columns })?;
+    rows(&text, name)
 }

@@ -63,6 +63,7 @@ pub const DRIVE_CATALOGUES: [BuiltinCatalogue; 1] = [BuiltinCatalogue {
 
 impl CatalogueItem for DriveRow {
     const COLUMNS: &'static str = "name, kind (prismatic or revolute), rated, peak, speed, inertia and mass_kg";
+    const REQUIRED: &'static [&'static str] = &["name", "kind", "rated", "peak", "speed", "inertia", "mass_kg"];
     const BUILTIN: &'static [BuiltinCatalogue] = &DRIVE_CATALOGUES;
 
     fn name(&self) -> &str {

@@ -77,10 +77,14 @@ pub enum StudyError {
     },
 }
 
+/// Returns the faults in a line, with a message that several keys share only once.
 fn summary(faults: &[Fault]) -> String {
-    let texts: Vec<String> = faults
-        .iter()
-        .map(|fault| format!("`{}` {}", fault.key, fault.message))
-        .collect();
-    texts.join("; ")
+    let text = |(place, fault): (usize, &Fault)| {
+        let first = faults[..place].iter().find(|other| other.message == fault.message);
+        match first {
+            Some(first) => format!("`{}` has the same fault as `{}`", fault.key, first.key),
+            None => format!("`{}` {}", fault.key, fault.message),
+        }
+    };
+    faults.iter().enumerate().map(text).collect::<Vec<String>>().join("; ")
 }

@@ -104,7 +104,7 @@ impl Study {
         }
         let source_code = || Arc::new(NamedSource::new(name, text.to_owned()).with_language("TOML"));
         let mut study: Study = toml::from_str(text).map_err(|error| StudyError::Shape {
-            message: error.message().to_owned(),
+            message: explained(error.message()),
             key: error.span().and_then(|span| key_at(text, span.start)),
             source_code: source_code(),
             span: error.span().map(SourceSpan::from),
@@ -202,4 +202,16 @@ fn span_of(text: &str, key: &str) -> Option<SourceSpan> {
         }
     }
     span
+}
+
+/// Returns the message of the parser, with an example where its words are those of the program's types.
+fn explained(message: &str) -> String {
+    match message {
+        _ if message.contains("expected `minimize` or `maximize`") => {
+            format!("{message}; write an objective as in {{ minimize = \"mass_kg\" }}")
+        }
+        _ => message
+            .replace("expected f64", "expected a number")
+            .replace("expected a sequence", "expected a list"),
+    }
 }

@@ -658,7 +658,7 @@ fn wrong_files_are_refused_with_file_line_and_key() {
         ),
         (
             "[material]\ndensity_kg_per_m3 = \"steel\"",
-            &["mine.toml:2", "material.density_kg_per_m3", "f64"],
+            &["mine.toml:2", "material.density_kg_per_m3", "expected a number"],
         ),
         (
             "[material]\ndensity_kg_per_m3 = -7850.0",
@@ -825,4 +825,16 @@ fn a_named_material_gives_what_is_not_stated() {
         );
     }
     assert_eq!(Material::from(&of("")), Material::STEEL);
+}
+
+/// A fault that several keys have is told once, with the file that has it.
+#[test]
+fn a_fault_that_two_keys_share_is_told_once() {
+    let section = "{ kind = \"tube\", catalogue = \"tubes-that-are-not-there.csv\" }";
+    let told = printed(&format!("[sections]\nlegs = {section}\nplatform = {section}\n"));
+    let told = told.split_whitespace().collect::<Vec<_>>().join(" ").replace("│ ", "");
+    assert!(
+        told.contains("`sections.platform.catalogue` has the same fault as `sections.legs.catalogue`"),
+        "{told}"
+    );
 }
