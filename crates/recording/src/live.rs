@@ -409,24 +409,7 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<SceneLegends, Recordin
         }
     }
     if layers.heatmap.is_some() || layers.singularities {
-        let field = layers.heatmap.unwrap_or(Field::DEXTERITY);
-        let phi = shown.heatmap_phi.unwrap_or(home.phi);
-        let mut heatmap = Heatmap::new(model, &evaluation.design, field, phi, HEATMAP);
-        if !layers.singularities {
-            heatmap.singular.clear();
-            heatmap.edges.clear();
-        }
-        if layers.heatmap.is_some() {
-            let locked = layers.locked.filter(|(locked, _)| *locked == field);
-            let range = locked.map(|(_, range)| range);
-            legends.field = subject.field(canvas, &heatmap, range, subject.floor())?;
-        } else {
-            heatmap.threshold.clear();
-            let floor = subject.floor();
-            canvas.outlines(&format!("{}/outlines", paths::HEATMAP), &heatmap, &|p: DVec2| {
-                p.extend(floor)
-            })?;
-        }
+        legends.field = draw_field(canvas, &subject, layers, shown.heatmap_phi.unwrap_or(home.phi))?;
     }
     if let Some(kind) = layers.ellipsoids
         && let Some(set) = ellipsoids(model, evaluation, kind)
@@ -462,6 +445,32 @@ fn draw(canvas: &Canvas<'_>, shown: &Shown<'_>) -> Result<SceneLegends, Recordin
         canvas.mark(&format!("{}/pose", paths::CONFIGURATION), at, "P", colors::ELLIPSOID)?;
     }
     Ok(legends)
+}
+
+/// Draws the heatmap of a field in an orientation \[rad\], or the singularities alone, and returns the legend of the field.
+fn draw_field(
+    canvas: &Canvas<'_>,
+    subject: &DrawnDesign<'_>,
+    layers: &VisibleLayers,
+    phi: f64,
+) -> Result<Option<FieldLegend>, RecordingError> {
+    let field = layers.heatmap.unwrap_or(Field::DEXTERITY);
+    let mut heatmap = Heatmap::new(subject.model, &subject.evaluation.design, field, phi, HEATMAP);
+    if !layers.singularities {
+        heatmap.singular.clear();
+        heatmap.edges.clear();
+    }
+    let floor = subject.floor();
+    if layers.heatmap.is_some() {
+        let locked = layers.locked.filter(|(locked, _)| *locked == field);
+        let range = locked.map(|(_, range)| range);
+        return subject.field(canvas, &heatmap, range, floor);
+    }
+    heatmap.threshold.clear();
+    canvas.outlines(&format!("{}/outlines", paths::HEATMAP), &heatmap, &|p: DVec2| {
+        p.extend(floor)
+    })?;
+    Ok(None)
 }
 
 /// Removes the parts that `layers` excludes.

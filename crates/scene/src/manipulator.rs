@@ -37,7 +37,6 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     let sizes = Sizes::in_stack(model, design, *bodies.stack());
 
     // The base triangle lies at the height of the members that are attached to it.
-    let chain = design.architecture().chain();
     let base = sizes.stack.base_height(design);
     let anchors = manipulator.legs.each_ref().map(|leg| leg.frame().anchor.extend(base));
     scene.lines.push(Line {
@@ -47,19 +46,7 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     frame(&mut scene, DVec2::ZERO, 0.0, 0.12 * design.base_radius(), "O");
     frame(&mut scene, pose.position, pose.phi, 0.12 * design.base_radius(), "P");
 
-    // The labels lie above all members.
-    let kinds = [chain.proximal, Some(chain.distal), Some(MemberKind::PlatformBar)];
-    let top = kinds
-        .into_iter()
-        .flatten()
-        .flat_map(|kind| (0..LEGS).map(move |leg| (kind, leg)))
-        .fold(0.0, |top, (kind, leg)| sizes.height(kind, leg).max(top));
-    let lift = top
-        + 3.4
-            * design
-                .leg_bar_radius()
-                .max(design.platform_bar_radius())
-                .max(LEAST * design.base_radius());
+    let lift = label_height(design, &sizes);
     surroundings::add(&mut scene, &model.settings().surroundings, [-lift, lift]);
     let joints = bodies.joints(&manipulator, pose.position, &posture);
     let motors = joints.iter().filter(|joint| joint.member.kind == MemberKind::Motor);
@@ -99,6 +86,19 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     }
     join_labels(&mut scene.labels, 0.015 * design.base_radius());
     Ok(scene)
+}
+
+/// Returns the height of the labels, above all members \[m\].
+fn label_height(design: &Design, sizes: &Sizes<'_>) -> f64 {
+    let chain = design.architecture().chain();
+    let kinds = [chain.proximal, Some(chain.distal), Some(MemberKind::PlatformBar)];
+    let members = kinds
+        .into_iter()
+        .flatten()
+        .flat_map(|kind| (0..LEGS).map(move |leg| (kind, leg)));
+    let top = members.fold(0.0, |top: f64, (kind, leg)| sizes.height(kind, leg).max(top));
+    let thickest = design.leg_bar_radius().max(design.platform_bar_radius());
+    top + 3.4 * thickest.max(LEAST * design.base_radius())
 }
 
 /// Joins labels that are nearer to each other than `distance` \[m\], because they would cover each other: "C1 C2 C3".

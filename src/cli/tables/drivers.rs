@@ -1,5 +1,6 @@
 //! Tables of what drives the mass of a design, and of wishes.
 
+use comfy_table::Table;
 use kinefront_model::evaluation::Quantity;
 use kinefront_scene::text::{self, number};
 use kinefront_study::{Drivers, DriversAlong, Hindrance, PriceJson, WhyNotJson, WishOutcome};
@@ -26,28 +27,7 @@ pub fn drivers(heading: &str, drivers: &Drivers) -> String {
     ]);
     let mut text = facts.to_string();
     if !drivers.prices.is_empty() {
-        let costs = format!("+1 % costs {name}");
-        let mut prices = table(
-            ["driver", "value", &costs, &format!("in {unit}"), "bars alone", "remark"],
-            &[1, 2, 3, 4],
-        );
-        for price in drivers.dear(FREE) {
-            prices.add_row([
-                price.label.clone(),
-                price
-                    .value
-                    .map_or(String::new(), |value| format!("{} {}", number(value), price.unit)),
-                if price.kink {
-                    format!("{:+.3} … {:+.3} %", price.below, price.above)
-                } else {
-                    format!("{:+.3} %", price.price)
-                },
-                format!("{:+.4}", 0.01 * price.price * drivers.polished_value),
-                price.bars_only.map_or(String::new(), |price| format!("{price:+.3} %")),
-                remark(price),
-            ]);
-        }
-        text = format!("{text}\n{prices}");
+        text = format!("{text}\n{}", prices(drivers));
         let free = drivers.free(FREE);
         if !free.is_empty() {
             text = format!("{text}\npractically free: {}", free.join(", "));
@@ -61,19 +41,7 @@ pub fn drivers(heading: &str, drivers: &Drivers) -> String {
         text = format!("{text}\n{slack}");
     }
     if !drivers.alternatives.is_empty() {
-        let mut others = table(["instead", name, "change", "with the design"], &[1, 2]);
-        for other in &drivers.alternatives {
-            let text = |value: Option<String>| value.unwrap_or_else(|| "–".to_owned());
-            others.add_row([
-                other.label.clone(),
-                text(other.value.map(|value| format!("{} {unit}", number(value)))),
-                other.change.map_or("no design is feasible".to_owned(), |change| {
-                    format!("{:+.2} %", 100.0 * change)
-                }),
-                text(other.design.clone()),
-            ]);
-        }
-        text = format!("{text}\n{others}");
+        text = format!("{text}\n{}", alternatives(drivers));
     }
     if let Some(why) = &drivers.why_not {
         text = format!("{text}\n{}", why_not(why, name, unit));
@@ -82,6 +50,51 @@ pub fn drivers(heading: &str, drivers: &Drivers) -> String {
         text = format!("{text}\nnote: {warning}");
     }
     text
+}
+
+/// Tabulates the prices of a design that are not nearly 0.
+fn prices(drivers: &Drivers) -> Table {
+    let (name, unit) = drivers.objective_name();
+    let costs = format!("+1 % costs {name}");
+    let mut prices = table(
+        ["driver", "value", &costs, &format!("in {unit}"), "bars alone", "remark"],
+        &[1, 2, 3, 4],
+    );
+    for price in drivers.dear(FREE) {
+        prices.add_row([
+            price.label.clone(),
+            price
+                .value
+                .map_or(String::new(), |value| format!("{} {}", number(value), price.unit)),
+            if price.kink {
+                format!("{:+.3} … {:+.3} %", price.below, price.above)
+            } else {
+                format!("{:+.3} %", price.price)
+            },
+            format!("{:+.4}", 0.01 * price.price * drivers.polished_value),
+            price.bars_only.map_or(String::new(), |price| format!("{price:+.3} %")),
+            remark(price),
+        ]);
+    }
+    prices
+}
+
+/// Tabulates the best designs with the next entries of lists and catalogues.
+fn alternatives(drivers: &Drivers) -> Table {
+    let (name, unit) = drivers.objective_name();
+    let mut others = table(["instead", name, "change", "with the design"], &[1, 2]);
+    for other in &drivers.alternatives {
+        let text = |value: Option<String>| value.unwrap_or_else(|| "–".to_owned());
+        others.add_row([
+            other.label.clone(),
+            text(other.value.map(|value| format!("{} {unit}", number(value)))),
+            other.change.map_or("no design is feasible".to_owned(), |change| {
+                format!("{:+.2} %", 100.0 * change)
+            }),
+            text(other.design.clone()),
+        ]);
+    }
+    others
 }
 
 /// Formats what drives the objective along the front of an architecture.

@@ -107,11 +107,29 @@ fn bar(ui: &mut Ui, price: &PriceJson, largest: f64, drivers: &Drivers, (objecti
     let in_unit = format!("{:+.3} {unit}", 0.01 * price.price * drivers.polished_value);
     let words = format!("{}: {share} of the {objective} for +1 %, {in_unit}", price.label);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &words));
-    let painter = ui.painter_at(rect);
-    let ink = theme::ink(ui);
     if response.hovered() {
+        let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 2.0, ui.visuals().widgets.hovered.weak_bg_fill);
     }
+    paint_bar(ui, rect, price, largest, &share);
+    let cannot = match price.bars_cannot_repair.as_slice() {
+        [] => String::new(),
+        ways => format!("\nThicker bars cannot offset a change {}.", ways.join(" or ")),
+    };
+    let value = price.value.map_or(String::new(), |value| {
+        format!("\nIts value is {} {}.", number(value), price.unit)
+    });
+    let steps = steps_in_words(price);
+    response
+        .on_hover_text(format!("{words}{value}{cannot}{steps}"))
+        .clicked()
+}
+
+/// Paints a price with its label and `share`, the bar as a part of the largest price. An outline is the price with the bars alone, a line the
+/// range of finite steps.
+fn paint_bar(ui: &Ui, rect: Rect, price: &PriceJson, largest: f64, share: &str) {
+    let painter = ui.painter_at(rect);
+    let ink = theme::ink(ui);
     let font = FontId::proportional(12.0);
     let label_width = 0.38 * rect.width();
     let text_width = 0.24 * rect.width();
@@ -125,7 +143,7 @@ fn bar(ui: &mut Ui, price: &PriceJson, largest: f64, drivers: &Drivers, (objecti
     painter.text(
         rect.right_center() - vec2(2.0, 0.0),
         Align2::RIGHT_CENTER,
-        &share,
+        share,
         font,
         ink,
     );
@@ -158,17 +176,6 @@ fn bar(ui: &mut Ui, price: &PriceJson, largest: f64, drivers: &Drivers, (objecti
         }
     }
     painter.vline(middle, area.y_range(), egui::Stroke::new(1.0, ink.gamma_multiply(0.5)));
-    let cannot = match price.bars_cannot_repair.as_slice() {
-        [] => String::new(),
-        ways => format!("\nThicker bars cannot offset a change {}.", ways.join(" or ")),
-    };
-    let value = price.value.map_or(String::new(), |value| {
-        format!("\nIts value is {} {}.", number(value), price.unit)
-    });
-    let steps = steps_in_words(price);
-    response
-        .on_hover_text(format!("{words}{value}{cannot}{steps}"))
-        .clicked()
 }
 
 /// Returns the least and the largest price that finite steps give: the change divided by the step.

@@ -163,37 +163,13 @@ const HAVE_ROWS: [Quantity; 4] = [
 fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
     let evaluation = &known.evaluation;
     let model = session.model();
-    let (legs, platform) = (
-        model.legs_mass(&evaluation.design),
-        model.platform_mass(&evaluation.design),
-    );
     Grid::new("objectives").num_columns(2).show(ui, |ui| {
         ui.label("mass in motion");
         ui.strong(format!("{} kg", theme::number(evaluation.mass())));
         ui.end_row();
         let region = &model.settings().workspace.region;
         ui.label(if region.is_prescribed() { "region" } else { "R_w" });
-        ui.horizontal(|ui| {
-            let certified = session.certified().filter(|_| known.verified);
-            if evaluation.home.is_some() && region.is_prescribed() {
-                ui.strong(text::region(region));
-            } else if evaluation.home.is_some() {
-                let proved = certified.filter(|certified| !certified.is_of_region);
-                let radius = proved.map_or(evaluation.workspace_radius(), |certified| certified.lower);
-                ui.strong(format!("{} m", theme::number(radius)));
-            } else {
-                ui.colored_label(theme::bad(ui), "infeasible: no regular workspace");
-            }
-            if let Some(limit) = evaluation.limits.iter().find(|limit| limit.margin < 0.0) {
-                let entry = limit.limit.quantity.entry();
-                ui.colored_label(theme::bad(ui), format!("infeasible: {} beyond its limit", entry.label));
-            }
-            ui.weak(match (certified, known.verified) {
-                (Some(certified), _) => certified.state(),
-                (None, true) => "fine grid",
-                (None, false) => "reference grid, verifying…",
-            });
-        });
+        ui.horizontal(|ui| workspace(ui, session, known));
         ui.end_row();
         for [part, bar] in text::selected_parts(model, evaluation) {
             ui.label(part);
@@ -221,7 +197,42 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             ui.end_row();
         }
     });
-    // The masses of legs and platform, as a bar in two colours.
+    masses(
+        ui,
+        [
+            model.legs_mass(&evaluation.design),
+            model.platform_mass(&evaluation.design),
+        ],
+    );
+}
+
+/// Shows the workspace of the selected design, whether it is feasible, and how it was examined.
+fn workspace(ui: &mut Ui, session: &Session, known: &Known) {
+    let evaluation = &known.evaluation;
+    let region = &session.model().settings().workspace.region;
+    let certified = session.certified().filter(|_| known.verified);
+    if evaluation.home.is_some() && region.is_prescribed() {
+        ui.strong(text::region(region));
+    } else if evaluation.home.is_some() {
+        let proved = certified.filter(|certified| !certified.is_of_region);
+        let radius = proved.map_or(evaluation.workspace_radius(), |certified| certified.lower);
+        ui.strong(format!("{} m", theme::number(radius)));
+    } else {
+        ui.colored_label(theme::bad(ui), "infeasible: no regular workspace");
+    }
+    if let Some(limit) = evaluation.limits.iter().find(|limit| limit.margin < 0.0) {
+        let entry = limit.limit.quantity.entry();
+        ui.colored_label(theme::bad(ui), format!("infeasible: {} beyond its limit", entry.label));
+    }
+    ui.weak(match (certified, known.verified) {
+        (Some(certified), _) => certified.state(),
+        (None, true) => "fine grid",
+        (None, false) => "reference grid, verifying…",
+    });
+}
+
+/// Shows the masses of legs and platform \[kg\] as a bar in two colours.
+fn masses(ui: &mut Ui, [legs, platform]: [f64; 2]) {
     let total = (legs + platform).max(f64::MIN_POSITIVE);
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 14.0), Sense::hover());
     let split = rect.left() + rect.width() * (legs / total) as f32;

@@ -1,6 +1,8 @@
 //! The strength of one pose in full: every member, joint and drive.
 
+use super::buckling::Column;
 use super::path::BARS;
+use super::resultants::LoadedLeg;
 use super::{StrengthInputs, StrengthModel, StrengthSet, StrengthValue};
 use crate::clearance::MemberId;
 use crate::mechanism::JointKind;
@@ -94,7 +96,6 @@ impl StrengthModel {
     pub fn report(&self, inputs: &StrengthInputs<f64>) -> Option<StrengthReport> {
         let legs = self.legs(inputs);
         let loaded = self.loaded(&legs);
-        let buckles = !self.is_on_bending_rails;
         let columns = self.columns(&loaded, inputs);
         let mut members = Vec::new();
         let mut joints = Vec::new();
@@ -103,37 +104,7 @@ impl StrengthModel {
                 if leg.path.bars[bar].length == 0.0 {
                     continue;
                 }
-                let column = &columns[index][bar];
-                let mut member = MemberStrength {
-                    member: MemberId {
-                        leg: index,
-                        kind: self.paths[index].members[bar],
-                    },
-                    stress: 0.0,
-                    share: 0.0,
-                    axial: [f64::INFINITY, f64::NEG_INFINITY],
-                    moment_in_plane: 0.0,
-                    moment_out_of_plane: 0.0,
-                    torsion: 0.0,
-                    euler: 1.0 / column.per_euler,
-                    effective_lengths: buckles.then(|| column.effective_lengths()),
-                    buckling_factor: buckles.then(|| column.factor()),
-                };
-                let loads = self.bar_loads(leg, bar);
-                for section in 0..self.sections() {
-                    let carried = self.section_loads(leg, bar, &loads, section);
-                    let stress = self.squared_stress(bar, &carried).sqrt();
-                    if stress > member.stress {
-                        member.stress = stress;
-                        member.share = section as f64 / (self.sections() - 1) as f64;
-                    }
-                    member.axial[0] = member.axial[0].min(carried.axial.value - carried.axial.range);
-                    member.axial[1] = member.axial[1].max(carried.axial.value + carried.axial.range);
-                    member.moment_in_plane = member.moment_in_plane.max(carried.in_plane.most());
-                    member.moment_out_of_plane = member.moment_out_of_plane.max(carried.out_of_plane.most());
-                    member.torsion = member.torsion.max(carried.torsion.most());
-                }
-                members.push(member);
+                members.push(self.member(leg, (index, bar), &columns[index][bar]));
             }
             for (place, joint) in self.paths[index].joints.iter().enumerate() {
                 let held = self.joint_loads(leg, index, place);
@@ -171,5 +142,40 @@ impl StrengthModel {
             joint_force: value(StrengthValue::JointForce)?,
             joint_moment: value(StrengthValue::JointMoment)?,
         })
+    }
+
+    /// Returns the strength of a bar, given by its leg and its place in the leg.
+    fn member(&self, leg: &LoadedLeg<'_, f64>, (index, bar): (usize, usize), column: &Column<f64>) -> MemberStrength {
+        let buckles = !self.is_on_bending_rails;
+        let mut member = MemberStrength {
+            member: MemberId {
+                leg: index,
+                kind: self.paths[index].members[bar],
+            },
+            stress: 0.0,
+            share: 0.0,
+            axial: [f64::INFINITY, f64::NEG_INFINITY],
+            moment_in_plane: 0.0,
+            moment_out_of_plane: 0.0,
+            torsion: 0.0,
+            euler: 1.0 / column.per_euler,
+            effective_lengths: buckles.then(|| column.effective_lengths()),
+            buckling_factor: buckles.then(|| column.factor()),
+        };
+        let loads = self.bar_loads(leg, bar);
+        for section in 0..self.sections() {
+            let carried = self.section_loads(leg, bar, &loads, section);
+            let stress = self.squared_stress(bar, &carried).sqrt();
+            if stress > member.stress {
+                member.stress = stress;
+                member.share = section as f64 / (self.sections() - 1) as f64;
+            }
+            member.axial[0] = member.axial[0].min(carried.axial.value - carried.axial.range);
+            member.axial[1] = member.axial[1].max(carried.axial.value + carried.axial.range);
+            member.moment_in_plane = member.moment_in_plane.max(carried.in_plane.most());
+            member.moment_out_of_plane = member.moment_out_of_plane.max(carried.out_of_plane.most());
+            member.torsion = member.torsion.max(carried.torsion.most());
+        }
+        member
     }
 }

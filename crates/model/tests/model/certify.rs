@@ -807,6 +807,29 @@ fn a_stiffness_that_is_least_where_its_eigenvalues_are_equal_is_proved() {
     assert_eq!(found.violation.expect("a pose").scalar, PoseScalar::StiffnessXy);
 }
 
+/// The stiffness out of the plane is nearly the threshold in a large part of this workspace, and its enclosure on rails that bend was too
+/// wide at a point far from where force and moment are decoupled.
+#[test]
+fn a_large_workspace_on_rails_that_bend_is_proved() {
+    let text = "3-PRR R=3.9758809925987957 r=2.1371163761287293 Lb=4 rj=0.035259241235426106 rp=0.07991042300038287 alpha_deg=90";
+    let design: Design = text.parse().expect("a design");
+    let model = model(|settings| {
+        settings.rails = Some(RailSettings {
+            section: CrossSection::Round,
+            radius: 0.03,
+            supports: RailSupports::Clamped { spans: 4 },
+        });
+    });
+    let options = CertifyOptions {
+        phi_deg: 5.0,
+        claimed_radius: 1.9915,
+        max_boxes: 60_000,
+        ..CertifyOptions::default()
+    };
+    let found = model.certify(&design, &options).expect("a certificate");
+    assert_eq!(found.verdict, Verdict::Proved, "{found:?}");
+}
+
 #[test]
 fn the_bound_of_all_homes_encloses_the_radius() {
     let models = other_models();

@@ -1,6 +1,7 @@
 //! Forms of the constraints on stiffness, g4, g5 and g6 (docs/model.md, section 13.3).
 
 use super::rails::{RailCompliances, RailForms};
+use super::strength::decoupled;
 use super::{Enclosures, Forms, others, turn};
 use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot, sum as sum_of};
 use crate::evaluation::PoseScalar;
@@ -336,7 +337,10 @@ impl Forms<'_> {
     /// `L_b` (docs/model.md, section 4.4).
     fn vertical(&self, leg: &LegEnclosure, index: usize) -> [TaylorModel; 2] {
         if self.compliance.rail.is_some() {
-            let compliance = self.bending(leg, index);
+            // The entry for a displacement without a rotation is the same at every point and in all axes. Along the distal bar, fewer parts
+            // vary, and where force and moment are almost decoupled, they hardly depend on each other.
+            let at = decoupled(&self.bending_in_distal_axes(leg, index, [0.0; 2]));
+            let compliance = self.bending_in_distal_axes(leg, index, at);
             let cofactors = cofactors(&compliance);
             return [cofactors[0], determinant(&compliance, &cofactors)];
         }

@@ -171,7 +171,7 @@ pub(super) fn in_other_axes(stiffness: &[TaylorModel; 6], columns: [[TaylorModel
 }
 
 /// Returns the point at which, in the middle of a box, a moment moves nothing along z; `C_i` if there is none.
-fn decoupled(compliance: &[TaylorModel; 6]) -> [f64; 2] {
+pub(super) fn decoupled(compliance: &[TaylorModel; 6]) -> [f64; 2] {
     let [_, b, c, d, e, f] = compliance.map(|entry| entry.constant);
     let determinant = d * f - e * e;
     let at = [(d * c - e * b) / determinant, (e * c - f * b) / determinant];
