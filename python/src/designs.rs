@@ -89,16 +89,24 @@ impl<T> Given<T> {
 fn refuse_misspelt(names: &[String]) -> PyResult<()> {
     let plain = |name: &str| {
         let name = name.to_lowercase();
-        let unit = ["_deg", "_rad", "_mm", "_m"].into_iter().find_map(|unit| name.strip_suffix(unit));
+        let unit = ["_deg", "_rad", "_mm", "_m"]
+            .into_iter()
+            .find_map(|unit| name.strip_suffix(unit));
         unit.unwrap_or(&name).replace('_', "")
     };
     let dimensions = DESIGN_VARIABLES.into_iter().chain(FURTHER_VARIABLES);
-    let known: Vec<String> = dimensions.map(|variable| Column::Dimension(variable).name().into_owned()).collect();
+    let known: Vec<String> = dimensions
+        .map(|variable| Column::Dimension(variable).name().into_owned())
+        .collect();
     for name in names.iter().filter(|name| !known.contains(name)) {
         // `R` and `r` differ in nothing else.
-        let meant = known.iter().find(|known| known.len() > 1 && plain(known) == plain(name));
+        let meant = known
+            .iter()
+            .find(|known| known.len() > 1 && plain(known) == plain(name));
         if let Some(meant) = meant.filter(|meant| !names.contains(meant)) {
-            return Err(InputError::new_err(format!("the column `{name}` is not known; a dimension is `{meant}`")));
+            return Err(InputError::new_err(format!(
+                "the column `{name}` is not known; a dimension is `{meant}`"
+            )));
         }
     }
     Ok(())

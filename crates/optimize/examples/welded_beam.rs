@@ -1,4 +1,4 @@
-//! A problem of one's own: cost against deflection of a welded beam (Deb, Pratap, Moitra 2000), by two algorithms.
+//! Your own problem: cost against deflection of a welded beam (Deb, Pratap, Moitra 2000), by two algorithms.
 //!
 //! `cargo run --release -p kinefront-optimize --example welded_beam`
 

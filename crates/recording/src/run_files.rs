@@ -175,7 +175,7 @@ impl<T: Fn(&RunFileError)> TableThread<T> {
         let Err(error) = write(&mut self.folder) else { return };
         let is_full = matches!(&error, WriteError::Write { cause, .. } if is_out_of_space(cause));
         if is_full && let Some(recording) = self.recording.take() {
-            // The recording can be written anew from the tables, but not the other way round.
+            // The recording can be regenerated from the tables, but not the other way round.
             self.failures.push(recording.give_up(&error, &self.tell));
             if let Err(error) = write(&mut self.folder) {
                 self.fail(error);

@@ -91,7 +91,7 @@ pub(crate) struct Barrier {
 }
 
 impl Surroundings {
-    /// Whether there is nothing beside the manipulator.
+    /// Whether there is nothing around the manipulator.
     pub fn is_empty(&self) -> bool {
         self.obstacles.is_empty() && self.room.is_none()
     }

@@ -76,7 +76,7 @@ impl<V: Real> LaneJob for MotionJob<'_, V> {
             MotionValue::NaturalFrequency => model.lowest_frequency(inputs, &legs),
             _ => model.demand(inputs, &legs, value),
         };
-        // What is no number is the worst one.
+        // A value that is not a number is the worst one.
         let is_known = found.splat(f64::INFINITY).exceeds(found.abs());
         found.select(is_known, found.splat(value.worst()))
     }

@@ -212,7 +212,7 @@ impl Resumption {
     }
 
     /// Begins to write the folder again: cuts the table after its last complete generation, and removes the recording, which
-    /// follows from the designs and is written anew.
+    /// follows from the designs and is regenerated.
     ///
     /// # Errors
     /// [`WriteError`] if a file cannot be written; the run can still be resumed.
@@ -234,7 +234,7 @@ impl Resumption {
         if !folder.merged().is_empty() {
             writer.set_merged(folder.merged().to_vec())?;
         }
-        // The recording is written anew from its beginning. The front stays until there is a new one.
+        // The recording is rewritten from its beginning. The front stays until there is a new one.
         remove(&path.join(RECORDING))?;
         Ok((writer, search))
     }

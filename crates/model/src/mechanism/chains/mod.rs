@@ -87,7 +87,7 @@ fn margin_within<V: Real>(value: V, [lower, upper]: [f64; 2]) -> V {
     (value - value.splat(lower)).smaller(value.splat(upper) - value)
 }
 
-/// Returns `margin`, or a large shortfall where it is no number.
+/// Returns `margin`, or a large shortfall where it is not a number.
 #[inline(always)]
 fn or_far_off<V: Real>(margin: V) -> V {
     let far = margin.splat(-NUMBER_LIMIT);
