@@ -165,7 +165,7 @@ impl LocalProblem {
     }
 
     /// Returns the minimum of a requirement at a place that is one already, with the place more exact: to the vertex of a paraboloid
-    /// through values around it, twice. The values near a minimum are equal up to rounding, and a gradient at a place that is slightly off
+    /// through values around it, three times. The values near a minimum are equal up to rounding, and a gradient at a place that is slightly off
     /// is off by as much. All coordinates change together, because a valley may be parallel to none of them.
     pub(crate) fn sharpened(&self, prepared: &Prepared, from: &Critical) -> Critical {
         let requirement = from.requirement;

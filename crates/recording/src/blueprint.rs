@@ -300,7 +300,6 @@ impl ViewLayout {
         Ok(node)
     }
 
-    /// Adds a view of the configuration space, seen from the side.
     /// Adds the maps of some fields as tabs, with the proof of the workspace in front of them if none is first.
     fn maps(&mut self, extent: f64, fields: &[Field], first: Option<Field>) -> Result<Node, ChunkError> {
         let mut maps = Vec::new();
@@ -358,6 +357,7 @@ impl ViewLayout {
         self.container(ContainerKind::Tabs, &curves, &[])
     }
 
+    /// Adds a view of the configuration space, seen from the side.
     fn configuration(&mut self, base_radius: f64) -> Result<Node, ChunkError> {
         let node = self.view(
             "3D",

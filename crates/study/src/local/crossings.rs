@@ -103,7 +103,7 @@ impl Crossing {
         format!("Another family of the {after} ({}) takes over", self.difference())
     }
 
-    /// Returns the largest difference of the two designs, for a person: the home orientation, or one of the dimensions.
+    /// Returns how the two designs differ, for a person: the home orientation if it differs, otherwise the dimension that differs most.
     fn difference(&self) -> String {
         let [below, above] = self.homes_deg;
         if libm::remainder(above - below, 360.0).abs() >= SAME_HOME_DEG {
