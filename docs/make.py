@@ -1,8 +1,8 @@
 """Writes what follows from commands in the documents: make.py [--program PATH] [--check] [NAME ...].
 
-A table stands between `<!-- make.py NAME -->` and `<!-- end -->` in a document of this folder. In a document that is named, or in all
-of those in SESSIONS without names, the commands are run from the top in an empty folder that has the files of the document, and a
-text block is what the commands of the last shell block before it have printed:
+A table stands between `<!-- make.py NAME -->` and `<!-- end -->` in a document of this folder. The commands of each document in SESSIONS
+are run in order in an empty folder that has the files of the document, and each marked text block becomes what the shell block before it
+has printed:
 
     <!-- output -->          all of it
     <!-- output: part -->    from the line that begins as the first line of the block does to the one that begins as the last one does
@@ -103,9 +103,11 @@ BLOCK = re.compile(r"(?:<!-- (?P<mark>output[^>]*?|file: [^>]*?) -->\n\n)?^```(?
 
 
 def key(line):
-    """The beginning of a line: its first cell, or the line up to the first number."""
+    """What a line is known by: the corner of a frame, the first cell, or the text up to a colon without its numbers."""
+    if line[:1] in "┌├╞└":
+        return line[:1]
     cells = re.split("[│┆]", line)
-    return cells[1].strip() if len(cells) > 2 else re.split(r"\d", line)[0].strip()
+    return cells[1].strip() if len(cells) > 2 else re.sub(r"\d+", "#", line.split(":")[0]).strip()
 
 
 def renewed_block(mark, body, printed):
@@ -129,6 +131,10 @@ def files(text):
 
 def session(text, headings, others, kinefront):
     """The text of a document with what its commands print."""
+    missing = set(headings or []) - set(re.findall(r"^##+ (.*)$", text, re.M))
+    marked = sum((match["mark"] or "").startswith("output") for match in BLOCK.finditer(text))
+    if missing or marked == 0 or marked != text.count("<!-- output"):
+        sys.exit(f"a heading is missing ({missing or 'none'}), or a mark stands without its block ({marked} of {text.count('<!-- output')} have one)")
     with tempfile.TemporaryDirectory() as folder:
         for name, contents in [*files(others).items(), *files(text).items()]:
             (pathlib.Path(folder) / name).write_text(contents, encoding="utf-8")
@@ -173,6 +179,8 @@ def main():
 
         def renew(match):
             name = match.group(1)
+            if name not in TABLES:
+                sys.exit(f"{path.name}: there is no table {name}; there are {', '.join(TABLES)}")
             if not is_asked(name):
                 return match.group(0)
             found.add(name)
@@ -187,7 +195,7 @@ def main():
         if renewed != text and arguments.check:
             old, new = text.splitlines(), renewed.splitlines()
             place = next((at for at, lines in enumerate(zip(old, new)) if lines[0] != lines[1]), min(len(old), len(new)))
-            stale.append(f"{path.name}, line {place + 1} is not current; run docs/make.py. It is now:\n{new[place]}")
+            stale.append(f"{path.name}, line {place + 1} is not current; run docs/make.py. It is now:\n{(new + [''])[place]}")
         elif renewed != text:
             path.write_text(renewed, encoding="utf-8")
     missing = set(arguments.names or [*TABLES, *SESSIONS]) - found

@@ -84,28 +84,28 @@ impl<T> Given<T> {
     }
 }
 
-/// Refuses a column that differs from that of a dimension in its unit or in capital letters alone. Other columns, such as those of a table
-/// of results, are of no concern.
+/// Refuses a column whose name differs from that of a dimension in its unit, in underscores or in capital letters alone. Other columns, such
+/// as those of a table of results, are of no concern.
 fn refuse_misspelt(names: &[String]) -> PyResult<()> {
-    let plain = |name: &str| {
-        let name = name.to_lowercase();
+    let without_unit = |name: &str| {
         let unit = ["_deg", "_rad", "_mm", "_m"]
             .into_iter()
             .find_map(|unit| name.strip_suffix(unit));
-        unit.unwrap_or(&name).replace('_', "")
+        unit.unwrap_or(name).to_owned()
     };
+    let plain = |name: &str| without_unit(&name.to_lowercase()).replace('_', "");
     let dimensions = DESIGN_VARIABLES.into_iter().chain(FURTHER_VARIABLES);
     let known: Vec<String> = dimensions
         .map(|variable| Column::Dimension(variable).name().into_owned())
         .collect();
     for name in names.iter().filter(|name| !known.contains(name)) {
-        // `R` and `r` differ in nothing else.
-        let meant = known
-            .iter()
-            .find(|known| known.len() > 1 && plain(known) == plain(name));
-        if let Some(meant) = meant.filter(|meant| !names.contains(meant)) {
+        // `R` and `r` differ in capital letters alone.
+        let is_meant =
+            |known: &&String| **known == without_unit(name) || known.len() > 1 && plain(known) == plain(name);
+        let meant = known.iter().find(is_meant).filter(|meant| !names.contains(meant));
+        if let Some(meant) = meant {
             return Err(InputError::new_err(format!(
-                "the column `{name}` is not known; a dimension is `{meant}`"
+                "the column `{name}` is not known; did you mean `{meant}`?"
             )));
         }
     }

@@ -191,3 +191,13 @@ def test_other_threads_run_during_an_evaluation(study):
     done.set()
     thread.join()
     assert during > 1000
+
+
+@pytest.mark.parametrize(("given", "meant"), [("alpha", "alpha_deg"), ("L_A", "La"), ("LB", "Lb"), ("R_m", "R")])
+def test_a_misspelt_column_is_refused(study, given, meant):
+    columns = {"architecture": ["3-PRR"], "R": [1.4], "r": [0.3], "Lb": [0.6], "rj": [0.03], "rp": [0.03]}
+    known = study.evaluate({**columns, "note": ["a column of no concern"]})
+    assert len(known) == 1
+    columns.pop(meant, None)
+    with pytest.raises(kinefront.InputError, match=f"`{given}` is not known; did you mean `{meant}`"):
+        study.evaluate({**columns, given: [1.0]})

@@ -55,6 +55,8 @@ fn the_reference_of_keys_is_current() {
 fn the_tables_of_the_documents_are_current() {
     let Some(mut python) = python(&["json"]) else { return };
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/make.py");
+    let tutorial = commands(&document("docs/tutorial.md"));
+    assert!(tutorial.len() >= 9, "{tutorial:?}");
     let names: &[&str] = if is_thorough() {
         &[]
     } else {

@@ -26,7 +26,15 @@ fn runs_of_several_seeds_become_one_whose_front_is_no_worse() {
         optimize(
             &study,
             &place(&format!("run {seed}")),
-            &["--seed", &seed, "--evaluations", "300", "--no-recording"],
+            &[
+                "--seed",
+                &seed,
+                "--evaluations",
+                "300",
+                "--front",
+                "40",
+                "--no-recording",
+            ],
         )
     });
     let out = place("merged");
@@ -50,7 +58,7 @@ fn runs_of_several_seeds_become_one_whose_front_is_no_worse() {
     let of_the_search = |report: &serde_json::Value| report["hypervolume_kg_m"].as_f64().expect("a number");
     for report in &reports {
         assert!(of_the_search(&merged) >= of_the_search(report));
-        // Of eight designs, it matters where the last one before the reference point happens to lie.
+        // Of few designs, it matters where the last one before the reference point happens to lie.
         assert!(hypervolume(&merged) >= 0.995 * hypervolume(report));
     }
     let sources: Vec<(&str, u64)> = merged["merged"]
@@ -124,7 +132,7 @@ fn runs_of_several_seeds_become_one_whose_front_is_no_worse() {
     // All designs of the front are kept, but not all of those from which optima are sought that the search has missed.
     let hypervolume = |run: &serde_json::Value| run["verified_hypervolume_kg_m"].as_f64().expect("a number");
     let lost = 1.0 - hypervolume(&thin) / hypervolume(&merged);
-    assert!(lost.abs() < 3e-3, "{lost}");
+    assert!(lost.abs() < 1e-3, "{lost}");
     check(&place("thin")).code(0);
 }
 

@@ -14,6 +14,9 @@ const ACCURACY: f64 = 1e-9;
 /// are one optimum that was followed.
 const DIFFERENT: f64 = 1e-5;
 
+/// Unknowns of two such optima that differ by no more than this are those of one optimum.
+const ALIKE: f64 = 1e-4;
+
 /// Largest number of secants.
 const SECANTS: usize = 40;
 
@@ -50,6 +53,14 @@ struct Both {
     optima: [Polished; 2],
     /// Logarithm by which the first is worse than the second.
     worse: f64,
+}
+
+impl Both {
+    /// Returns whether one of the branches has fallen into the other.
+    fn is_one_optimum(&self) -> bool {
+        let [first, second] = [0, 1].map(|place| &self.optima[place].unknowns);
+        first.iter().zip(second).all(|(a, b)| (a - b).abs() <= ALIKE)
+    }
 }
 
 impl Branch<'_> {
@@ -127,6 +138,9 @@ impl Meeting {
                 break;
             }
             if next.worse < 0.0 { near = next } else { far = next }
+        }
+        if is_one_architecture && near.is_one_optimum() {
+            return None;
         }
         let prices = [
             branches[0].price_at(&near.optima[0], near.at)?,

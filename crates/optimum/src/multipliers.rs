@@ -165,12 +165,12 @@ fn non_negative(columns: &DMatrix<f64>, gradient: &DVector<f64>) -> (Vec<f64>, f
     if !columns.iter().chain(gradient).all(|number| number.is_finite()) {
         return (vec![0.0; count], f64::MAX);
     }
-    if count == 0 || rows == 0 {
+    if rows == 0 {
         // Where every dimension is listed, nothing is left to change.
-        return (
-            vec![0.0; count],
-            gradient.iter().fold(0.0, |most, part| most.max(part.abs())),
-        );
+        return (vec![0.0; count], 0.0);
+    }
+    if count == 0 {
+        return (Vec::new(), gradient.amax());
     }
     let lengths: Vec<f64> = columns
         .column_iter()
@@ -252,6 +252,8 @@ mod tests {
         let away = DMatrix::from_row_slice(2, 1, &[-1.0, 0.0]);
         let (found, residual) = non_negative(&away, &gradient);
         assert!(found[0] < 1e-6 && (residual - 4.0).abs() < 1e-6);
+        let nothing_to_change = non_negative(&DMatrix::zeros(0, 1), &DVector::zeros(0));
+        assert_eq!(nothing_to_change, (vec![0.0], 0.0));
         let broken = DMatrix::from_row_slice(2, 1, &[f64::NAN, 0.0]);
         assert_eq!(non_negative(&broken, &gradient).0, vec![0.0]);
     }

@@ -189,7 +189,7 @@ impl LocalProblem {
     }
 
     /// Returns the vertex of the paraboloid through the values of a requirement around a place; `None` if there is none nearby. A
-    /// coordinate stays as it is at an end of its range and at a kink, where a parabola has no vertex.
+    /// coordinate stays as it is at an end of its range.
     fn vertex(&self, prepared: &Prepared, requirement: Requirement, place: Place) -> Option<Place> {
         let freedoms = Area::freedoms(place.spot);
         let shifted =
@@ -212,17 +212,27 @@ impl LocalProblem {
         for row in 0..free.len() {
             for column in 0..row {
                 let corner = |a: f64, b: f64| at(shifted(shifted(place, free[row], a)?, free[column], b)?);
-                let twist = 0.25 * (corner(1.0, 1.0)? + corner(-1.0, -1.0)? - corner(1.0, -1.0)? - corner(-1.0, 1.0)?);
+                let twist =
+                    || Some(0.25 * (corner(1.0, 1.0)? + corner(-1.0, -1.0)? - corner(1.0, -1.0)? - corner(-1.0, 1.0)?));
+                // Where a corner lies outside the region, both coordinates are taken alone.
+                let twist = twist().unwrap_or(0.0);
                 (matrix[(row, column)], matrix[(column, row)]) = (twist, twist);
             }
         }
-        let steps = matrix.cholesky()?.solve(&DVector::from_column_slice(&slopes));
-        if steps.amax() > NEARBY {
+        let slopes = DVector::from_vec(slopes);
+        // So they are where the values have no minimum together.
+        let steps = match matrix.cholesky() {
+            Some(factors) => factors.solve(&slopes),
+            None => slopes.component_div(&DVector::from_vec(bends)),
+        };
+        if steps.iter().any(|step| step.abs() > NEARBY) {
             return None;
         }
-        free.iter()
-            .zip(steps.iter())
-            .try_fold(place, |place, (freedom, step)| shifted(place, *freedom, -step))
+        let steps = free.iter().zip(steps.iter());
+        // A coordinate that does not change stays.
+        Some(steps.fold(place, |place, (freedom, step)| {
+            shifted(place, *freedom, -step).unwrap_or(place)
+        }))
     }
 }
 

@@ -6,7 +6,7 @@
 >>> round(float(table["mass_kg"][0]), 1)
 445.6
 
-Lengths are in metres, masses in kilograms, and angles of poses in radians; the names of columns include their units, or they are in
+Lengths are in metres, masses in kilograms, and angles of poses in radians; the unit of a column is in its name or in
 ``Table.units``.
 """
 

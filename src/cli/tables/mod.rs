@@ -134,7 +134,7 @@ fn add_limits(facts: &mut Table, evaluation: &Evaluation) {
             match result.value {
                 Some(value) if result.margin >= 0.0 => format!("{} {limit}: kept", text::number(value)),
                 Some(value) => format!("{} {limit}: missed ({})", text::number(value), percent(result.margin)),
-                // No pose that is reached has one.
+                // The design has no value where it is examined.
                 None => format!("{limit}: not evaluated"),
             },
         ]);

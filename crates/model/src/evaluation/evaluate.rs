@@ -27,7 +27,8 @@ impl Model {
     }
 
     /// Evaluates a design like [`Model::evaluate`], and determines the values of an infeasible design that are limited, which tell a person
-    /// what is wrong: over a prescribed region in the best home orientation, otherwise at the pose at which the constraints are reported.
+    /// what is wrong: over a prescribed region in the best home orientation, otherwise at the pose at which the constraints are reported. The
+    /// violation and the quantities are those of [`Model::evaluate`].
     pub fn evaluate_in_full(&self, design: &Design, grid: GridChoice) -> Evaluation {
         with_leg!(design.architecture(), L => {
             let checker = self.checker::<L>(design);

@@ -75,20 +75,12 @@ pub(super) fn add_of_region<L: Leg>(
         checker.limited_of_loads()
     };
     let left: ScalarSet = set.iter().filter(|scalar| !searched.contains(*scalar)).collect();
-    let indices = positions.indices();
-    let mut least = [f64::INFINITY; PoseScalar::COUNT];
-    for index in found.orientation_grid.window(home) {
-        let arms = &found.orientations[index].arms;
+    let window = || found.orientation_grid.window(home);
+    let mut least = least_over(checker, found, left, window(), positions);
+    for index in window() {
         for scalar in set.iter().filter(|scalar| searched.contains(*scalar)) {
             let least = &mut least[scalar as usize];
             *least = least.min(found.of_loads[index][scalar]);
-        }
-        if left.is_empty() {
-            continue;
-        }
-        let minima = checker.worst(left, arms, &positions.xs, &positions.ys, &indices);
-        for (least, minimum) in least.iter_mut().zip(minima) {
-            *least = least.min(minimum.value);
         }
     }
     for scalar in set.iter() {
@@ -97,8 +89,31 @@ pub(super) fn add_of_region<L: Leg>(
     }
 }
 
+/// Returns the smallest values of some scalars, each with the sign with which more is better, over positions in some orientations.
+fn least_over<L: Leg>(
+    checker: &PoseChecker<L>,
+    found: &RegularWorkspace,
+    set: ScalarSet,
+    orientations: impl Iterator<Item = usize>,
+    positions: &Positions,
+) -> [f64; PoseScalar::COUNT] {
+    let mut least = [f64::INFINITY; PoseScalar::COUNT];
+    if set.is_empty() {
+        return least;
+    }
+    let indices = positions.indices();
+    for index in orientations {
+        let arms = &found.orientations[index].arms;
+        let minima = checker.worst(set, arms, &positions.xs, &positions.ys, &indices);
+        for (least, minimum) in least.iter_mut().zip(minima) {
+            *least = least.min(minimum.value);
+        }
+    }
+    least
+}
+
 /// Adds the values of the limits of an infeasible design that have none: the worst over a prescribed region in the best home orientation, or
-/// the value at the pose at which the constraints are reported. A scalar without a value at any pose stays without one.
+/// the value at the pose at which the constraints are reported. A limit whose scalar has no value there keeps none.
 pub(super) fn add_to_limits<L: Leg>(
     evaluation: &mut Evaluation,
     model: &Model,
@@ -127,15 +142,7 @@ pub(super) fn add_to_limits<L: Leg>(
         }
     };
     positions.pad();
-    let indices = positions.indices();
-    let mut least = [f64::INFINITY; PoseScalar::COUNT];
-    for index in orientations {
-        let arms = &found.orientations[index].arms;
-        let minima = checker.worst(set, arms, &positions.xs, &positions.ys, &indices);
-        for (least, minimum) in least.iter_mut().zip(minima) {
-            *least = least.min(minimum.value);
-        }
-    }
+    let least = least_over(checker, found, set, orientations.into_iter(), &positions);
     for limit in &mut evaluation.limits {
         if let Some(scalar) = scalar_of(limit)
             && least[scalar as usize].is_finite()

@@ -13,7 +13,7 @@ const AT_ONCE: usize = 16;
 /// Number of evaluations of the search for which one design is looked for, so that a short search has a short end.
 const EVALUATIONS: usize = 3;
 
-/// Number of designs that are looked for at most if fewer are reported: the gap beside an end is known only once the end is.
+/// Designs that are looked for at least, if the evaluations allow it, though fewer are reported: the gap next to an end of the front is found only after the end itself.
 const FEWEST: usize = 16;
 
 /// Number of designs that are looked for in gaps for one beyond the boundary of a family.

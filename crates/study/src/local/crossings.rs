@@ -13,9 +13,10 @@ use crate::DesignProblem;
 /// Home orientations that differ by less than this are one \[°\].
 const SAME_HOME_DEG: f64 = 0.1;
 
-/// Changes of the logarithms of lengths and of angles \[rad\] between neighbours of one family: at least this, and the change of the
-/// logarithm of the quantity along the front times this.
+/// Largest change of the logarithms of lengths and of angles \[rad\] between neighbours of one family at the same place of the front.
 const ALIKE: f64 = 0.02;
+
+/// What is added to it for each unit of the logarithm of the quantity along the front.
 const STEEP: f64 = 3.0;
 
 /// A design of a front with the optimum near it.
@@ -89,7 +90,7 @@ impl Crossing {
         self.designs.map(|design| design.architecture())
     }
 
-    /// Whether an architecture begins or ends there, or one of its families.
+    /// Whether an architecture, or one of its families, begins or ends there.
     pub fn is_of(&self, architecture: Architecture) -> bool {
         self.architectures().contains(&architecture)
     }

@@ -82,9 +82,19 @@ pub enum CatalogueFault {
         /// The columns.
         columns: &'static str,
     },
+    /// The file is not text.
+    #[error("is wrong: {0} is not UTF-8 text; save it in that encoding")]
+    Encoding(String),
     /// The name of an entry is wrong.
-    #[error("is wrong: the name in line {0} {1}")]
-    Name(u64, String),
+    #[error("is wrong: the name in line {line} of {file} {fault}")]
+    Name {
+        /// The file, or the name of the catalogue.
+        file: String,
+        /// The line.
+        line: u64,
+        /// What is wrong.
+        fault: String,
+    },
     /// The entries do not form a catalogue of bars.
     #[error("is wrong: {0}")]
     Bars(#[from] CatalogueError),
@@ -170,8 +180,9 @@ fn rows<Item: CatalogueItem>(text: &str, file: &str) -> Result<Vec<Item>, Catalo
         let record = record.map_err(|error| wrong(error.position().map_or(1, |position| position.line())))?;
         let line = record.position().map_or(1, |position| position.line());
         let row: Item = record.deserialize(Some(&headers)).map_err(|_| wrong(line))?;
-        if let Some(message) = wrong_name(row.name()) {
-            return Err(CatalogueFault::Name(line, message));
+        if let Some(fault) = wrong_name(row.name()) {
+            let file = file.to_owned();
+            return Err(CatalogueFault::Name { file, line, fault });
         }
         rows.push(row);
     }
@@ -203,7 +214,6 @@ fn read_rows<Item: CatalogueItem>(folder: &Path, name: &str, scope: FileScope) -
         }
     }
     let text = read_regular(&path, LARGEST_CATALOGUE).map_err(unreadable)?;
-    let (file, columns) = (name.to_owned(), Item::COLUMNS);
-    let text = String::from_utf8(text).map_err(|_| CatalogueFault::Header { file, columns })?;
+    let text = String::from_utf8(text).map_err(|_| CatalogueFault::Encoding(name.to_owned()))?;
     rows(&text, name)
 }

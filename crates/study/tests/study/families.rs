@@ -55,7 +55,7 @@ fn a_family_takes_over_from_another_of_the_same_architecture() {
     for (design, home) in crossing.designs.iter().zip(crossing.homes_deg) {
         let mass = problem.model().mass(design);
         assert!((mass / crossing.objective - 1.0).abs() < 1e-7, "{crossing:?}");
-        // At its home orientation, each of both has the radius at which they meet, with bars that leave room for rounding.
+        // At its home orientation, each of the two has the radius at which they meet, with bars that leave room for rounding.
         let mut study = study();
         study.workspace.home_phi_deg = Some(home);
         let at_home = DesignProblem::new(&study).expect("a valid study");
@@ -79,8 +79,10 @@ fn a_family_takes_over_from_another_of_the_same_architecture() {
     );
 }
 
-/// Neighbours of one family are one optimum that is followed.
+/// Neighbours of one family are not followed to a place where they would meet.
 #[test]
 fn neighbours_of_one_family_do_not_cross() {
-    assert_eq!(along(&ABOVE).crossings, []);
+    let along = along(&ABOVE);
+    assert_eq!(along.designs.len(), 2);
+    assert_eq!(along.crossings, []);
 }

@@ -1,7 +1,6 @@
 //! Forms of the constraints on stiffness, g4, g5 and g6 (docs/model.md, section 13.3).
 
 use super::rails::{RailCompliances, RailForms};
-use super::strength::decoupled;
 use super::{Enclosures, Forms, others, turn};
 use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot, sum as sum_of};
 use crate::evaluation::PoseScalar;
@@ -333,14 +332,12 @@ impl Forms<'_> {
         }
     }
 
-    /// Encloses `det S_φφ` and `det S` of a leg out of the plane, at `C_i` in axes along the distal bar, with lengths in units of
-    /// `L_b` (docs/model.md, section 4.4).
+    /// Encloses `det S_φφ` and `det S` of a leg out of the plane in axes along the distal bar, with lengths in units of `L_b` (docs/model.md,
+    /// section 4.4): at `C_i`, or on a rail that bends where force and moment are almost decoupled.
     fn vertical(&self, leg: &LegEnclosure, index: usize) -> [TaylorModel; 2] {
         if self.compliance.rail.is_some() {
-            // The entry for a displacement without a rotation is the same at every point and in all axes. Along the distal bar, fewer parts
-            // vary, and where force and moment are almost decoupled, they hardly depend on each other.
-            let at = decoupled(&self.bending_in_distal_axes(leg, index, [0.0; 2]));
-            let compliance = self.bending_in_distal_axes(leg, index, at);
+            // The entry for a displacement without a rotation is the same at every point and in all axes.
+            let (_, compliance) = self.decoupled_bending(leg, index);
             let cofactors = cofactors(&compliance);
             return [cofactors[0], determinant(&compliance, &cofactors)];
         }

@@ -128,14 +128,18 @@ impl Forms<'_> {
         }
     }
 
-    /// Encloses the stiffness of a leg out of the plane.
-    ///
-    /// Its compliance varies little over a box in the axes of the distal bar, and at one point of these, force and moment are almost
-    /// decoupled. It is therefore inverted there.
+    /// Encloses the compliance of a leg out of the plane in the axes of the distal bar, and returns the point relative to `C_i` at which it is:
+    /// it varies little over a box in these axes, and at that point, force and moment are almost decoupled.
+    pub(super) fn decoupled_bending(&self, leg: &LegEnclosure, index: usize) -> ([f64; 2], [TaylorModel; 6]) {
+        let at = decoupled(&self.bending_in_distal_axes(leg, index, [0.0; 2]));
+        (at, self.bending_in_distal_axes(leg, index, at))
+    }
+
+    /// Encloses the stiffness of a leg out of the plane: its compliance is inverted where force and moment are almost decoupled.
     fn stiffness_out_of_plane(&self, leg: &LegEnclosure, index: usize) -> LegStiffness<EnclosedNumber> {
         let frame = &self.frames[index];
-        let at = decoupled(&self.bending_in_distal_axes(leg, index, [0.0; 2]));
-        let compliance = self.bending_in_distal_axes(leg, index, at).map(EnclosedNumber);
+        let (at, compliance) = self.decoupled_bending(leg, index);
+        let compliance = compliance.map(EnclosedNumber);
         let stiffness = EnclosedNumber::symmetric_inverse(&compliance).map(|entry| entry.0);
         let (zero, one) = (TaylorModel::exactly(0.0), TaylorModel::exactly(1.0));
         let [tx, ty] = leg.chain.tangent;
@@ -171,7 +175,7 @@ pub(super) fn in_other_axes(stiffness: &[TaylorModel; 6], columns: [[TaylorModel
 }
 
 /// Returns the point at which, in the middle of a box, a moment moves nothing along z; `C_i` if there is none.
-pub(super) fn decoupled(compliance: &[TaylorModel; 6]) -> [f64; 2] {
+fn decoupled(compliance: &[TaylorModel; 6]) -> [f64; 2] {
     let [_, b, c, d, e, f] = compliance.map(|entry| entry.constant);
     let determinant = d * f - e * e;
     let at = [(d * c - e * b) / determinant, (e * c - f * b) / determinant];
