@@ -129,6 +129,18 @@ impl Rotation {
     }
 }
 
+/// Returns the rows of the inverse of the Cholesky factor of a symmetric matrix, given as an upper triangle, if it is positive definite.
+pub(crate) fn inverse_factor(matrix: &[f64; 6]) -> Option<[[f64; 3]; 3]> {
+    let [a, b, c, d, e, f] = f64::cholesky(matrix);
+    let second = [-b / (a * d), 1.0 / d, 0.0];
+    let third = [(b * e / d - c) / (a * f), -e / (d * f), 1.0 / f];
+    let rows = [[1.0 / a, 0.0, 0.0], second, third];
+    rows.as_flattened()
+        .iter()
+        .all(|entry| entry.is_finite())
+        .then_some(rows)
+}
+
 /// Returns the smaller eigenvalue of the symmetric matrix `[[xx, xy], [xy, yy]]`.
 #[inline(always)]
 pub fn smaller_eigenvalue<V: Real>(xx: V, xy: V, yy: V) -> V {

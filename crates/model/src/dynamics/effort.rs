@@ -1,7 +1,8 @@
 //! What the motion of a design asks of its actuators at several poses at once, whatever its direction (docs/model.md, section 15.7).
 
+use super::displacement::Own;
+use super::frequency::lowest_frequency;
 use super::legs::{DynamicsInputs, MovingLeg};
-use super::modes::lowest_frequency;
 use super::{Anywhere, DynamicsModel, DynamicsSettings, Tolerances};
 use crate::enclosure::{EnclosedNumber, TaylorModel};
 use crate::lanes::{LaneJob, Real, dot, scaled};
@@ -21,6 +22,17 @@ pub(crate) enum MotionValue {
 }
 
 impl MotionValue {
+    /// All values, those that take the fewest operations first.
+    pub const ALL: [MotionValue; 7] = [
+        MotionValue::ActuatorSpeed,
+        MotionValue::ActuatorRate,
+        MotionValue::MotionForce,
+        MotionValue::MotionTorque,
+        MotionValue::OrientationError,
+        MotionValue::PositionError,
+        MotionValue::NaturalFrequency,
+    ];
+
     /// Returns the kind of actuators that have the value; `None` if all designs have it.
     #[inline(always)]
     pub fn of_actuators(self) -> Option<JointKind> {
@@ -100,28 +112,14 @@ impl DynamicsModel {
         }
     }
 
-    /// Encloses both blocks of `K − (2πf)² M` over a box of poses, as upper triangles: they are positive definite where all natural
-    /// frequencies are above `f`.
-    pub fn enclose_stiffness_above(
-        &self,
-        inputs: &DynamicsInputs<EnclosedNumber>,
-        legs: &[MovingLeg<EnclosedNumber>; LEGS],
-        frequency: f64,
-    ) -> [[EnclosedNumber; 6]; 2] {
-        let rate = 2.0 * std::f64::consts::PI * frequency;
-        let less = |stiffness: [EnclosedNumber; 6], mass: [EnclosedNumber; 6]| {
-            let square = stiffness[0].splat(rate * rate);
-            std::array::from_fn(|entry| stiffness[entry] - square * mass[entry])
-        };
-        [
-            less(inputs.legs.in_plane(), self.mass_in_plane(inputs, legs)),
-            less(inputs.legs.out_of_plane(), self.mass_out_of_plane(inputs, legs)),
-        ]
-    }
-
     /// Returns a value that a limit bounds from above, at several poses at once; not a number where there is none.
     #[inline(always)]
-    fn demand<V: Real>(&self, inputs: &DynamicsInputs<V>, legs: &[MovingLeg<V>; LEGS], value: MotionValue) -> V {
+    pub(super) fn demand<V: Real>(
+        &self,
+        inputs: &DynamicsInputs<V>,
+        legs: &[MovingLeg<V>; LEGS],
+        value: MotionValue,
+    ) -> V {
         match value {
             MotionValue::NaturalFrequency => legs[0].transmission.splat(f64::NAN),
             MotionValue::PositionError => self.worst_position(&self.leg_errors(inputs, legs)).0,
@@ -215,12 +213,12 @@ impl DynamicsModel {
 
     /// Returns the lowest natural frequency \[Hz\]; no number on rails that bend.
     #[inline(always)]
-    fn lowest_frequency<V: Real>(&self, inputs: &DynamicsInputs<V>, legs: &[MovingLeg<V>; LEGS]) -> V {
+    pub(super) fn lowest_frequency<V: Real>(&self, inputs: &DynamicsInputs<V>, legs: &[MovingLeg<V>; LEGS]) -> V {
         if self.is_on_bending_rails {
             return legs[0].transmission.splat(f64::NAN);
         }
-        let in_plane = lowest_frequency(&inputs.legs.in_plane(), &self.mass_in_plane(inputs, legs));
-        let out_of_plane = lowest_frequency(&inputs.legs.out_of_plane(), &self.mass_out_of_plane(inputs, legs));
+        let in_plane = lowest_frequency(&inputs.legs.in_plane(), &self.mass_in_plane(inputs, legs, Own));
+        let out_of_plane = lowest_frequency(&inputs.legs.out_of_plane(), &self.mass_out_of_plane(inputs, legs, Own));
         // A sum keeps what is not a number, which a comparison loses.
         in_plane.smaller(out_of_plane) + (in_plane + out_of_plane) * in_plane.splat(0.0)
     }

@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use super::effort::norm;
 use super::legs::{DynamicsInputs, MovingLeg};
 use super::{DynamicsModel, Rail};
 use crate::lanes::{Planar, Real, dot};
@@ -163,6 +164,25 @@ impl DynamicsModel {
             );
         }
         (worst, direction)
+    }
+
+    /// Returns a bound of the largest error of the position: the displacements that each source causes in two directions bound those in all.
+    #[inline(always)]
+    pub(super) fn position_bound<V: Real>(&self, legs: &[LegErrors<V>; LEGS]) -> V {
+        let mut bound = legs[0].bound.splat(0.0);
+        for leg in legs {
+            bound = bound + norm(&leg.column) * leg.bound;
+        }
+        if self.rails.is_some() && self.settings.tolerances.base > 0.0 {
+            let base = bound.splat(self.settings.tolerances.base);
+            let x = [legs[0].column[0], legs[1].column[0], legs[2].column[0]];
+            let y = [legs[0].column[1], legs[1].column[1], legs[2].column[1]];
+            let (first, second) = (self.base_errors(legs, &x), self.base_errors(legs, &y));
+            for end in 0..first.len() {
+                bound = bound + base * (first[end].dot(first[end]) + second[end].dot(second[end])).sqrt();
+            }
+        }
+        bound
     }
 
     /// Returns the largest error of the position in each of the directions in which it is determined.

@@ -5,13 +5,18 @@
 //! velocities and accelerations of the bodies, and virtual work gives the forces. Everything is written over [`Real`], so that a report
 //! of one pose and an evaluation of many use the same formulas.
 
+mod above;
+mod bar_shape;
+mod displacement;
 mod drive;
 mod effort;
 mod enclosed_task;
 mod error;
 mod frame;
+mod frequency;
 mod inverse;
 mod legs;
+mod limits;
 mod modes;
 mod report;
 mod settings;
@@ -21,6 +26,7 @@ pub use drive::{Drive, DriveCatalogue, DriveCatalogueError};
 pub(crate) use effort::{MotionJob, MotionValue};
 pub(crate) use enclosed_task::EnclosedMotion;
 pub(crate) use legs::DynamicsInputs;
+pub(crate) use limits::{LegsJob, LimitJob};
 pub use report::{Accuracy, DynamicsReport, ErrorBudget, Gains, Motion, Response, VibratingBar, VibratingPoint};
 pub use settings::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};
 pub use task::{MotionLaw, Task, TaskFrame, TaskInstant, TaskMotion, TaskShape, TaskTiming};

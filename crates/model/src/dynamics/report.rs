@@ -1,11 +1,13 @@
 //! The motion of a design at one pose in full.
 
 use super::DynamicsModel;
+use super::bar_shape::BarShape;
+use super::displacement::{Coordinates, Own, Row, full};
 use super::effort::norm;
 use super::error::{LegErrors, PoseErrors};
+use super::frequency::lowest_frequency;
 use super::inverse::DriveMotion;
 use super::legs::{DynamicsInputs, MovingLeg};
-use super::modes::{Row, full, lowest_frequency};
 use super::settings::Tolerances;
 use crate::mechanism::AnyLeg;
 use crate::spatial::{LEGS, Pose, Rotation};
@@ -215,8 +217,8 @@ impl DynamicsModel {
         actuators: &[f64; LEGS],
     ) -> Option<DynamicsReport> {
         let legs = self.legs(inputs);
-        let in_plane = self.mass_in_plane(inputs, &legs);
-        let out_of_plane = self.mass_out_of_plane(inputs, &legs);
+        let in_plane = self.mass_in_plane(inputs, &legs, Own);
+        let out_of_plane = self.mass_out_of_plane(inputs, &legs, Own);
         let rigid = self.rigid_mass(inputs, &legs);
         let effort = self.effort_rows(&legs, &rigid);
         let errors = self.leg_errors(inputs, &legs);
@@ -292,8 +294,9 @@ impl DynamicsModel {
         for (index, leg) in legs.iter().enumerate() {
             let mut unused = [0.0; 6];
             let mut in_plane = [const { Vec::new() }; BARS];
-            self.add_leg_in_plane(&mut unused, leg, inputs.legs.along[index], |bar, shape| {
+            self.add_leg_in_plane(&mut unused, leg, inputs.legs.along[index], Own, |bar, ends| {
                 let lanes = &leg.path.bars[bar];
+                let shape = BarShape::new(lanes.length, ends);
                 let axis = lanes.axis;
                 let moved = |share: f64| {
                     let [across, along] = shape.at_share(lanes.length, share);
@@ -304,9 +307,10 @@ impl DynamicsModel {
                 };
                 in_plane[bar] = shares().map(moved).collect();
             });
-            let stiffness = &inputs.legs.stiffness[index].at_platform;
-            self.add_leg_out_of_plane(&mut unused, leg, stiffness, |bar, shape| {
+            let forces = Own.forces(&inputs.legs.stiffness[index]);
+            self.add_leg_out_of_plane(&mut unused, leg, &forces, Own, |bar, ends| {
                 let lanes = &leg.path.bars[bar];
+                let shape = BarShape::new(lanes.length, ends);
                 let point = |(share, in_plane): (f64, &[Row<f64>; 2])| {
                     let place = inputs.position.plus(lanes.place(lanes.length * share));
                     VibratingPoint {

@@ -116,8 +116,9 @@ impl EnclosedNumber {
 /// Encloses the inverse of a matrix, without the cancellation of its cofactors.
 ///
 /// Let `Y` be the inverse in the middle of the box, however it is rounded, and `E = I − Y M`. Then `M⁻¹ = (I − E)⁻¹ Y`, which is
-/// `(I + E + E²) Y + E³ (I − E)⁻¹ Y`. With positive weights `t`, `|E v|_i ≤ s t_i` for every `|v|_i ≤ t_i`, if `s` is the largest row
-/// sum of `|E_ij| t_j/t_i`: an entry of the last term is at most `t_i s³/(1 − s) max_j |Y_jk|/t_j`.
+/// `(I + E + E²) Y + (I − E)⁻¹ E³ Y`. With positive weights `t`, `|E v|_i ≤ s t_i` for every `|v|_i ≤ t_i`, if `s` is the largest row
+/// sum of `|E_ij| t_j/t_i`: an entry of the last term is at most `t_i/(1 − s) max_j (|E|³ |Y|)_jk/t_j`. A row of `E` that nearly vanishes
+/// has a small weight, and a small row of `|E|³ |Y|`.
 fn inverse(matrix: &[[EnclosedNumber; 3]; 3]) -> [[EnclosedNumber; 3]; 3] {
     const INDICES: [usize; 3] = [0, 1, 2];
     let unknown = [[EnclosedNumber(EnclosedNumber::UNKNOWN); 3]; 3];
@@ -150,7 +151,8 @@ fn inverse(matrix: &[[EnclosedNumber; 3]; 3]) -> [[EnclosedNumber; 3]; 3] {
         return unknown;
     }
     // The factor covers the rounding of the bound itself.
-    let rest = norm * norm * norm / (1.0 - norm) * (1.0 + 1e-9);
+    let rest = (1.0 + 1e-9) / (1.0 - norm);
+    let grown = |column: [f64; 3]| size.map(|row| row[0] * column[0] + row[1] * column[1] + row[2] * column[2]);
     let series = INDICES.map(|i| {
         INDICES.map(|k| {
             let square = error[i][0] * error[0][k] + error[i][1] * error[1][k] + error[i][2] * error[2][k];
@@ -161,10 +163,8 @@ fn inverse(matrix: &[[EnclosedNumber; 3]; 3]) -> [[EnclosedNumber; 3]; 3] {
     INDICES.map(|i| {
         INDICES.map(|k| {
             let column = INDICES.map(|j| inverse[j][k]);
-            let largest = INDICES
-                .map(|j| column[j].abs() / weights[j])
-                .into_iter()
-                .fold(0.0, f64::max);
+            let cube = grown(grown(grown(column.map(f64::abs))));
+            let largest = INDICES.map(|j| cube[j] / weights[j]).into_iter().fold(0.0, f64::max);
             let bound = weights[i] * rest * largest;
             if !bound.is_finite() {
                 return EnclosedNumber(EnclosedNumber::UNKNOWN);

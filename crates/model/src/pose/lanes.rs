@@ -3,6 +3,7 @@
 use super::PoseChecker;
 use super::entry::Better;
 use super::scalars::PoseScalar;
+use super::scalars::keep_limits_of_motion;
 use super::values::{CoreLanes, CoreScalars, EXAMINED_ALWAYS, PoseLanes, PoseScalars, ScalarSet};
 use crate::kinematics::Jacobian;
 use crate::lanes::{LaneJob, Planar, Real};
@@ -217,9 +218,10 @@ impl<L: Leg> PoseChecker<L> {
         let mut good = good;
         if ALL && V::any(good) {
             let mut scalars = PoseScalars::of_core(scalars);
-            self.fill_on_demand(set, position, arms, &mut scalars);
+            self.fill_on_demand(set.without_motion(), position, arms, &mut scalars);
             for &scalar in PoseScalar::ALL {
-                if !EXAMINED_ALWAYS.contains(&scalar) && self.thresholds.get(scalar).is_some() {
+                let is_examined = !EXAMINED_ALWAYS.contains(&scalar) && scalar.of_motion().is_none();
+                if is_examined && self.thresholds.get(scalar).is_some() {
                     let (value, limit) = (scalars[scalar], self.bound_lanes(sign, scalar));
                     good = good
                         & match scalar.entry().quantity.better {
@@ -227,6 +229,9 @@ impl<L: Leg> PoseChecker<L> {
                             Better::Lower => limit.at_least(value),
                         };
                 }
+            }
+            if self.thresholds.limit_motion() && V::any(good) {
+                good = keep_limits_of_motion(self, position, arms, good);
             }
         }
         // Where the pose is already infeasible the limit is −∞, so that no clearance is below it and no pair is

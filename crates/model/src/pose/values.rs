@@ -128,6 +128,13 @@ impl ScalarSet {
         Self(self.0 >> PoseScalar::ALWAYS.len() << PoseScalar::ALWAYS.len())
     }
 
+    /// Returns the scalars of the set that do not depend on a motion.
+    #[inline(always)]
+    pub(crate) fn without_motion(self) -> Self {
+        // Those of a motion are the last ones of the table.
+        Self(self.0 & ((1 << (PoseScalar::COUNT - PoseScalar::OF_MOTION.len())) - 1))
+    }
+
     /// Returns whether the set is empty.
     #[inline(always)]
     pub(crate) fn is_empty(self) -> bool {
@@ -286,6 +293,12 @@ impl Thresholds {
             .iter()
             .copied()
             .filter_map(|scalar| Some((scalar, self.get(scalar)?)))
+    }
+
+    /// Returns whether a limit is of a scalar that depends on a motion.
+    #[inline(always)]
+    pub(crate) fn limit_motion(&self) -> bool {
+        PoseScalar::OF_MOTION.iter().any(|&scalar| self.0[scalar].is_finite())
     }
 
     /// Returns whether a limit is of a scalar that not every loop over poses examines.

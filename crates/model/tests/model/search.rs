@@ -13,7 +13,7 @@ use kinefront_testkit::repetitions;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::strategies::{bodies, clearance, design, model};
+use super::strategies::{bodies, clearance, design, limit_motion, model};
 
 /// Form of the stiffness that decides which poses are feasible.
 #[derive(Clone, Copy)]
@@ -77,7 +77,9 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
             design,
             instructions.name()
         );
-        prop_assert!(found.active().next().is_some(), "{}: no constraint is active", design);
+        // Of the limits of a study, none has an id among the constraints.
+        let is_limited = found.active().next().is_some() || !found.limits.is_empty();
+        prop_assert!(is_limited, "{}: no constraint is active", design);
     }
     Ok(())
 }
@@ -154,6 +156,27 @@ proptest! {
             settings.thresholds.set(PoseScalar::Clearance, Some(clearance));
         });
         same(&model, &design).map_err(TestCaseError::fail)?;
+    }
+
+    /// Whether a pose keeps the limits of a motion is determined by fewer operations than their values take. Each limit alone decides at
+    /// some strictness.
+    #[test]
+    fn also_where_a_motion_is_limited(
+        design in design(0.01),
+        place in 0..PoseScalar::OF_MOTION.len(),
+        strictness in 0.1..10.0f64,
+    ) {
+        let model = model(|settings| {
+            limit_motion(settings);
+            settings.reference_grid = Grid::new(10.0, 12, 20, 20).expect("a grid");
+            for (other, &scalar) in PoseScalar::OF_MOTION.iter().enumerate() {
+                let limit = settings.thresholds.get(scalar).expect("a limit");
+                let is_raised = scalar == PoseScalar::NaturalFrequency;
+                let by = if is_raised { strictness } else { 1.0 / strictness };
+                settings.thresholds.set(scalar, (other == place).then_some(by * limit));
+            }
+        });
+        exactly(&model, &design)?;
     }
 
     /// This also covers ties and grids of any shape: one direction marched, rings of a few poses, a single step, no

@@ -1,7 +1,8 @@
 //! Strategies for random designs and poses over the whole design space: the bounds of the paper for every architecture.
 
 use kinefront_model::clearance::{BodySettings, Layers};
-use kinefront_model::evaluation::{Model, ModelSettings};
+use kinefront_model::dynamics::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};
+use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar};
 use kinefront_model::mechanism::{
     Architecture, Arrangement, BarLength, CrossSection, Design, FURTHER_VARIABLES, LegSettings, Wall, WorkingMode,
 };
@@ -146,4 +147,49 @@ pub fn bodies() -> impl Strategy<Value = BodySettings> {
 /// Generates a clearance that a study may require \[m\], or none.
 pub fn clearance() -> impl Strategy<Value = Option<f64>> {
     prop::option::weighted(0.8, 0.0..0.05)
+}
+
+/// Limits everything of a motion.
+pub fn limit_motion(settings: &mut ModelSettings) {
+    settings.dynamics = DynamicsSettings {
+        payload: Payload {
+            mass: 15.0,
+            inertia: 0.4,
+            centre: [0.1, -0.05],
+        },
+        drives: DriveInertia {
+            slider_mass: 3.0,
+            prismatic: 5.0,
+            revolute: 2.0,
+        },
+        gravity: [1.0, -3.0, -9.0],
+        tool: [0.0; 3],
+        anywhere: Anywhere {
+            velocity: 1.0,
+            omega: 1.0,
+            acceleration: 5.0,
+            alpha: 5.0,
+            force: 100.0,
+            moment: 10.0,
+        },
+        tolerances: Tolerances {
+            encoder_prismatic: 1e-5,
+            encoder_revolute: 3e-5,
+            link: 5e-5,
+            base: 5e-5,
+            platform: 5e-5,
+            play: 1e-5,
+        },
+    };
+    for (scalar, limit) in [
+        (PoseScalar::NaturalFrequency, 20.0),
+        (PoseScalar::PositionError, 4e-4),
+        (PoseScalar::OrientationError, 0.03),
+        (PoseScalar::ActuatorSpeed, 3.0),
+        (PoseScalar::ActuatorRate, 3.0),
+        (PoseScalar::MotionForce, 4000.0),
+        (PoseScalar::MotionTorque, 4000.0),
+    ] {
+        settings.thresholds.set(scalar, Some(limit));
+    }
 }

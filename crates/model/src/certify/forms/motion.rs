@@ -6,9 +6,8 @@ use super::{Enclosures, Forms};
 use crate::dynamics::{DynamicsInputs, DynamicsModel, MotionValue};
 use crate::enclosure::{EnclosedNumber, Interval, PoseEnclosure, TaylorModel};
 use crate::evaluation::{Model, PoseScalar};
-use crate::lanes::Real;
 use crate::mechanism::{Design, LegEnclosure};
-use crate::spatial::LEGS;
+use crate::spatial::{LEGS, inverse_factor};
 
 /// What the limits of a motion need of a design.
 pub(super) struct MotionForms {
@@ -86,16 +85,4 @@ fn minors(matrix: [EnclosedNumber; 6]) -> [TaylorModel; 3] {
         a * d - b * b,
         a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d),
     ]
-}
-
-/// Returns the rows of the inverse of the Cholesky factor of a matrix, if it is positive definite.
-fn inverse_factor(matrix: &[f64; 6]) -> Option<[[f64; 3]; 3]> {
-    let [a, b, c, d, e, f] = f64::cholesky(matrix);
-    let second = [-b / (a * d), 1.0 / d, 0.0];
-    let third = [(b * e / d - c) / (a * f), -e / (d * f), 1.0 / f];
-    let rows = [[1.0 / a, 0.0, 0.0], second, third];
-    rows.as_flattened()
-        .iter()
-        .all(|entry| entry.is_finite())
-        .then_some(rows)
 }

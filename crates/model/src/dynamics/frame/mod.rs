@@ -11,8 +11,9 @@ use nalgebra::DMatrix;
 use vibration::Frame;
 
 use super::DynamicsModel;
+use super::bar_shape::GAUSS;
 use super::legs::{DynamicsInputs, MovingLeg};
-use super::modes::{GAUSS, distance_of_joint};
+use super::modes::distance_of_joint;
 use crate::lanes::Planar;
 use crate::spatial::LEGS;
 use crate::strength::path::{BARS, BarLanes, DISTAL, PLATFORM, Span};

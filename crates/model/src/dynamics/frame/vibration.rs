@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, Dyn, Matrix3, MatrixXx3};
 
 use super::OF_PLATFORM;
-use crate::dynamics::modes::lowest_frequency;
+use crate::dynamics::frequency::lowest_frequency;
 
 /// Relative change of a frequency at which the iteration ends.
 const CONVERGED: f64 = 1e-12;

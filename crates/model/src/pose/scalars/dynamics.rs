@@ -2,7 +2,7 @@
 
 use super::PoseScalar;
 use super::strength::inputs;
-use crate::dynamics::{DynamicsInputs, MotionJob};
+use crate::dynamics::{DynamicsInputs, DynamicsModel, LegsJob, LimitJob, MotionJob, MotionValue};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::Leg;
 use crate::pose::{PoseChecker, PoseScalars, ScalarSet};
@@ -19,14 +19,7 @@ pub(super) fn fill<L: Leg, V: Real>(
     scalars: &mut PoseScalars<V>,
 ) {
     let like = position.x;
-    let model = checker.dynamics.as_ref();
-    let known = match (model, &checker.stiffness) {
-        (Some(model), Some(stiffness)) => {
-            let legs = inputs(checker, stiffness, position, arms);
-            Some((model, DynamicsInputs { position, legs }))
-        }
-        _ => None,
-    };
+    let known = known(checker, position, arms);
     for &scalar in PoseScalar::OF_MOTION {
         let Some(value) = scalar.of_motion().filter(|_| set.contains(scalar)) else {
             continue;
@@ -37,5 +30,57 @@ pub(super) fn fill<L: Leg, V: Real>(
             }
             _ => like.splat(value.worst()),
         };
+    }
+}
+
+/// Returns at which of several poses, of those of a mask, all limits are kept that depend on a motion.
+#[inline(always)]
+pub(in crate::pose) fn keep_limits_of_motion<L: Leg, V: Real>(
+    checker: &PoseChecker<L>,
+    position: Planar<V>,
+    arms: &[Planar<V>; LEGS],
+    mut good: V::Mask,
+) -> V::Mask {
+    let like = position.x;
+    let Some((model, inputs)) = &known(checker, position, arms) else {
+        return good & like.splat(0.0).exceeds(like.splat(0.0));
+    };
+    let legs = &like.call_apart(LegsJob { model, inputs });
+    for value in MotionValue::ALL {
+        let Some(limit) = checker.thresholds.get(value.scalar()) else {
+            continue;
+        };
+        good = if value.exists(checker.actuator) {
+            like.call_apart(LimitJob {
+                model,
+                inputs,
+                legs,
+                value,
+                limit,
+                good,
+            })
+        } else {
+            good & like.splat(0.0).exceeds(like.splat(0.0))
+        };
+        if !V::any(good) {
+            break;
+        }
+    }
+    good
+}
+
+/// Returns what the motion at several poses follows from, if the design has one.
+#[inline(always)]
+fn known<'a, L: Leg, V: Real>(
+    checker: &'a PoseChecker<L>,
+    position: Planar<V>,
+    arms: &[Planar<V>; LEGS],
+) -> Option<(&'a DynamicsModel, DynamicsInputs<V>)> {
+    match (&checker.dynamics, &checker.stiffness) {
+        (Some(model), Some(stiffness)) => {
+            let legs = inputs(checker, stiffness, position, arms);
+            Some((model, DynamicsInputs { position, legs }))
+        }
+        _ => None,
     }
 }

@@ -9,6 +9,8 @@ mod footprint;
 mod strength;
 mod transmission;
 
+pub(super) use dynamics::keep_limits_of_motion;
+
 use super::PoseChecker;
 use super::entry::{Better, QuantityEntry, Reference, Scope};
 use super::values::{PoseScalars, ScalarSet};
@@ -37,6 +39,11 @@ pub struct PoseScalarEntry {
     /// bars makes it worse.
     pub is_frequency: bool,
 }
+
+const _: () = assert!(
+    MotionValue::ALL.len() == PoseScalar::OF_MOTION.len(),
+    "every limit of a motion is examined"
+);
 
 /// What a margin is divided by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,6 +121,16 @@ macro_rules! pose_scalars {
         }
 
         const TABLE: &[PoseScalarEntry] = &[$($entry,)* $($more_entry,)* $($load_entry,)* $($motion_entry,)*];
+
+        impl MotionValue {
+            /// Returns the scalar that is the value.
+            #[inline(always)]
+            pub(crate) fn scalar(self) -> PoseScalar {
+                match self {
+                    $(MotionValue::$motion => PoseScalar::$motion,)*
+                }
+            }
+        }
 
         impl PoseScalar {
             /// All scalars, in the order of the table.
