@@ -196,7 +196,7 @@ impl<V: Real> BarShape<V> {
     }
 
     /// Adds what the pieces of a bar contribute to the mass, out of the plane if `is_torsion`: the second displacement is then the rotation
-    /// about the bar.
+    /// about the bar. What lies beyond an end is added where there is something.
     #[inline(always)]
     pub(super) fn add_pieces(
         &self,
@@ -205,6 +205,7 @@ impl<V: Real> BarShape<V> {
         gyration: f64,
         is_torsion: bool,
         is_telescopic: bool,
+        at_shares: bool,
     ) {
         let zero = bar.length.splat(0.0);
         for (place, piece) in bar.pieces.iter().enumerate() {
@@ -230,13 +231,22 @@ impl<V: Real> BarShape<V> {
                 continue;
             }
             let (from, to) = (piece.from, piece.to);
-            let between = [
+            // A comparison of enclosures would not tell that nothing lies beyond the ends.
+            if at_shares && piece.is_within {
+                shape.add_stretch(mass, 0, [from, to], inertia);
+                continue;
+            }
+            let within = [
                 from.larger(zero).smaller(bar.length),
                 to.larger(zero).smaller(bar.length),
             ];
-            shape.add_stretch(mass, 0, between, inertia);
-            shape.add_stretch(mass, 1, [from.smaller(zero), to.smaller(zero)], inertia);
-            shape.add_stretch(mass, 2, [from.larger(bar.length), to.larger(bar.length)], inertia);
+            shape.add_stretch(mass, 0, within, inertia);
+            if V::any(zero.exceeds(from)) {
+                shape.add_stretch(mass, 1, [from.smaller(zero), to.smaller(zero)], inertia);
+            }
+            if V::any(to.exceeds(bar.length)) {
+                shape.add_stretch(mass, 2, [from.larger(bar.length), to.larger(bar.length)], inertia);
+            }
         }
     }
 }

@@ -203,7 +203,8 @@ impl DynamicsModel {
             ends.add_uniform(mass, lanes, gyration, is_torsion);
         } else {
             let shape = BarShape::new(lanes.length, ends);
-            shape.add_pieces(mass, lanes, gyration, is_torsion, self.is_telescopic(bar));
+            let is_telescopic = self.is_telescopic(bar);
+            shape.add_pieces(mass, lanes, gyration, is_torsion, is_telescopic, C::AT_SHARES);
         }
     }
 

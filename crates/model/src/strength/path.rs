@@ -51,6 +51,8 @@ struct Piece {
     to: f64,
     /// Mass per length \[kg/m\].
     density: f64,
+    /// Whether it lies between the ends of the bar at all poses that the leg reaches.
+    is_within: bool,
 }
 
 /// A joint of a leg.
@@ -95,6 +97,7 @@ impl LegPath {
                     from: 0.0,
                     to: length,
                     density,
+                    is_within: true,
                 }),
                 None,
             ]
@@ -107,6 +110,7 @@ impl LegPath {
                 from,
                 to,
                 density: of_leg * length / (to - from),
+                is_within: false,
             };
             [Some(piece), None]
         };
@@ -125,6 +129,7 @@ impl LegPath {
                         from: 0.0,
                         to,
                         density: of_leg,
+                        is_within: to <= settings.telescopic_shortest * link_length,
                     })
                 };
                 [piece(End::Base, tube), piece(End::Platform, link_length - tube)]
@@ -253,6 +258,7 @@ fn span<V: Real>(piece: &Option<Piece>, sign: V, length: V) -> Span<V> {
             from: zero,
             to: zero,
             density: 0.0,
+            is_within: true,
         };
     };
     let (from, to) = (sign * sign.splat(piece.from), sign * sign.splat(piece.to));
@@ -264,6 +270,7 @@ fn span<V: Real>(piece: &Option<Piece>, sign: V, length: V) -> Span<V> {
         from: from.smaller(to),
         to: from.larger(to),
         density: piece.density,
+        is_within: piece.is_within,
     }
 }
 
@@ -275,6 +282,8 @@ pub(crate) struct Span<V> {
     pub to: V,
     /// Mass per length \[kg/m\].
     pub density: f64,
+    /// Whether it lies between the ends of the bar at all poses that the leg reaches.
+    pub is_within: bool,
 }
 
 impl<V: Real> Span<V> {
