@@ -52,12 +52,7 @@ impl ProvedForms {
         }
         let fails = found.open().filter(|(_, value)| {
             // A comparison with NaN is false: nothing is told then.
-            let holds = value.value(epsilon)
-                > if std::env::var_os("KF_A").is_some() {
-                    0.0
-                } else {
-                    value.remainder
-                };
+            let holds = value.value(epsilon) - value.remainder > 0.0;
             !holds
         });
         let fails: ScalarSet = fails.map(|(scalar, _)| *scalar).collect();
