@@ -1,4 +1,4 @@
-//! Proof that all natural frequencies are above a limit (docs/model.md, section 13.3).
+//! Proof that all natural frequencies are above a limit (docs/model.md, section 15.8).
 
 use super::DynamicsModel;
 use super::displacement::{Coordinates, Displacement, Row, add_square, column, lift, times};

@@ -1,4 +1,4 @@
-//! Whether poses keep the limits of a motion, by fewer operations than the values that are limited take.
+//! Whether poses keep the limits of a motion, by fewer operations than the limited values take (docs/model.md, section 15.8).
 
 use super::DynamicsModel;
 use super::displacement::Own;

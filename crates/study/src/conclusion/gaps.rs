@@ -13,7 +13,8 @@ const AT_ONCE: usize = 16;
 /// Number of evaluations of the search for which one design is looked for, so that a short search has a short end.
 const EVALUATIONS: usize = 3;
 
-/// Designs that are looked for at least, if the evaluations allow it, though fewer are reported: the gap next to an end of the front is found only after the end itself.
+/// Designs that are looked for at least, if the evaluations allow it, though fewer are reported: the gap next to an end of the front is
+/// found only after the end itself.
 const FEWEST: usize = 16;
 
 /// Number of designs that are looked for in gaps for one beyond the boundary of a family.
@@ -103,8 +104,8 @@ impl Settling<'_> {
         }
     }
 
-    /// Returns the designs that are wanted in the largest gaps: each the design to start from, as a place in `held`, and the aim. `tried` are the pairs of neighbours between which a design was looked for already, once for each
-    /// time.
+    /// Returns the designs that are wanted in the largest gaps: each the design to start from, as a place in `held`, and the aim. `tried` are
+    /// the pairs of neighbours between which a design was looked for already, once for each time.
     fn wanted_between(&self, standing: &Archive, tried: &mut Vec<[usize; 2]>) -> Vec<(usize, Aim)> {
         let (points, most) = (objectives(standing), self.search.study().optimizer.front_designs);
         let mut found = gaps(&points, &self.reference_near(&points));

@@ -14,8 +14,8 @@ pub(super) const ROOM: f64 = 2e-7;
 /// Share of the objective that a design for the fine grid may cost before the other neighbour of its home orientation is tried.
 const DEAR: f64 = 1e-3;
 
-/// Slacks that are tried in turn where the optimum does not hold on the fine grid: a clearance has kinks, so that its least value can lie between the poses that
-/// an optimum knows.
+/// Slacks that are tried in turn where the optimum does not hold on the fine grid: a clearance has kinks, so that its least value can lie
+/// between the poses that an optimum knows.
 pub(super) const ROOMS: [f64; 3] = [ROOM, 1e-5, 1e-3];
 
 /// Number of optima with different entries of lists that are tried on the fine grid.
