@@ -4,7 +4,7 @@ use super::DynamicsModel;
 use super::displacement::{Coordinates, Displacement, Row, add_square, column, lift, times};
 use super::legs::{DynamicsInputs, MovingLeg};
 use crate::enclosure::{EnclosedNumber, TaylorModel};
-use crate::lanes::{Planar, Real, dot, scaled, sum};
+use crate::lanes::{Real, dot, scaled, sum};
 use crate::spatial::{LEGS, inverse_factor};
 use crate::strength::LegStiffness;
 
@@ -24,38 +24,15 @@ impl Even {
         let columns = [0, 1, 2].map(|k| [first[k], second[k], third[k]]);
         Self(columns.map(|row| row.map(|entry| EnclosedNumber(TaylorModel::exactly(entry)))))
     }
-}
 
-impl Coordinates<EnclosedNumber> for Even {
-    const AT_SHARES: bool = true;
-
-    fn of(self, row: &Row<EnclosedNumber>) -> Row<EnclosedNumber> {
-        let [x, y, z] = self.0;
-        sum(&sum(&scaled(&x, row[0]), &scaled(&y, row[1])), &scaled(&z, row[2]))
-    }
-
-    fn platform(self, _: EnclosedNumber) -> Displacement<EnclosedNumber> {
-        self.0
-    }
-
-    /// The forces are those at the point where force and moments are almost decoupled, moved to `P`.
-    fn forces(self, stiffness: &LegStiffness<EnclosedNumber>) -> Displacement<EnclosedNumber> {
-        let Some((centre, at_centre)) = &stiffness.at_centre else {
-            return times(&stiffness.at_platform, &self.0);
+    /// Returns the displacements out of the plane, and the forces of a leg, at the point where its force and moments are almost decoupled; at
+    /// `P` if none is known.
+    fn where_decoupled(self, stiffness: &LegStiffness<EnclosedNumber>) -> [Displacement<EnclosedNumber>; 2] {
+        let (moved, stiffness) = match &stiffness.at_centre {
+            Some((centre, at_centre)) => ([lift(&self.0, *centre), self.0[1], self.0[2]], at_centre),
+            None => (self.0, &stiffness.at_platform),
         };
-        let [force, first, second] = times(at_centre, &self.at(*centre));
-        [
-            force,
-            sum(&first, &scaled(&force, centre.y)),
-            sum(&second, &scaled(&force, -centre.x)),
-        ]
-    }
-}
-
-impl Even {
-    /// Returns the displacements out of the plane at a place.
-    fn at(self, place: Planar<EnclosedNumber>) -> Displacement<EnclosedNumber> {
-        [lift(&self.0, place), self.0[1], self.0[2]]
+        [moved, times(stiffness, &moved)]
     }
 
     /// Encloses the stiffness in the plane.
@@ -76,17 +53,39 @@ impl Even {
     fn out_of_plane(self, inputs: &DynamicsInputs<EnclosedNumber>) -> [EnclosedNumber; 6] {
         let mut sum = [inputs.legs.along[0].splat(0.0); 6];
         for leg in &inputs.legs.stiffness {
-            let (moved, stiffness) = match &leg.at_centre {
-                Some((centre, at_centre)) => (self.at(*centre), at_centre),
-                None => (self.0, &leg.at_platform),
-            };
-            let forces = times(stiffness, &moved);
+            let [moved, forces] = self.where_decoupled(leg);
             let pairs = [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]];
             for (sum, [i, k]) in sum.iter_mut().zip(pairs) {
                 *sum = *sum + dot(&column(&moved, i), &column(&forces, k));
             }
         }
         sum
+    }
+}
+
+impl Coordinates<EnclosedNumber> for Even {
+    const AT_SHARES: bool = true;
+
+    fn of(self, row: &Row<EnclosedNumber>) -> Row<EnclosedNumber> {
+        let [x, y, z] = self.0;
+        sum(&sum(&scaled(&x, row[0]), &scaled(&y, row[1])), &scaled(&z, row[2]))
+    }
+
+    fn platform(self, _: EnclosedNumber) -> Displacement<EnclosedNumber> {
+        self.0
+    }
+
+    fn forces(self, stiffness: &LegStiffness<EnclosedNumber>) -> Displacement<EnclosedNumber> {
+        let [_, forces] = self.where_decoupled(stiffness);
+        let Some((centre, _)) = &stiffness.at_centre else {
+            return forces;
+        };
+        let [force, first, second] = forces;
+        [
+            force,
+            sum(&first, &scaled(&force, centre.y)),
+            sum(&second, &scaled(&force, -centre.x)),
+        ]
     }
 }
 

@@ -11,7 +11,8 @@ pub(super) type Displacement<V> = [Row<V>; 3];
 
 /// Coordinates of the platform in which displacements are stated.
 pub(super) trait Coordinates<V: Real>: Copy {
-    /// Whether masses are summed up at fixed shares of a uniform bar, which takes few operations.
+    /// Whether masses are summed up at fixed shares of a uniform bar, and in one stretch where a piece is known to lie within its bar, which
+    /// takes few operations.
     const AT_SHARES: bool;
 
     /// Returns in these coordinates what is given as a row of the displacements of the platform.

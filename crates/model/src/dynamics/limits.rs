@@ -84,7 +84,7 @@ impl DynamicsModel {
     ) -> V::Mask {
         let (zero, one) = (least.splat(0.0), least.splat(1.0));
         if self.is_on_bending_rails {
-            return good & zero.exceeds(zero);
+            return zero.exceeds(zero);
         }
         let rate = least * least.splat(2.0 * std::f64::consts::PI);
         let square = rate * rate;

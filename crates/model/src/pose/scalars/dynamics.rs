@@ -42,26 +42,26 @@ pub(in crate::pose) fn keep_limits_of_motion<L: Leg, V: Real>(
     mut good: V::Mask,
 ) -> V::Mask {
     let like = position.x;
+    let none = like.splat(0.0).exceeds(like.splat(0.0));
     let Some((model, inputs)) = &known(checker, position, arms) else {
-        return good & like.splat(0.0).exceeds(like.splat(0.0));
+        return none;
     };
     let legs = &like.call_apart(LegsJob { model, inputs });
     for value in MotionValue::ALL {
         let Some(limit) = checker.thresholds.get(value.scalar()) else {
             continue;
         };
-        good = if value.exists(checker.actuator) {
-            like.call_apart(LimitJob {
-                model,
-                inputs,
-                legs,
-                value,
-                limit,
-                good,
-            })
-        } else {
-            good & like.splat(0.0).exceeds(like.splat(0.0))
-        };
+        if !value.exists(checker.actuator) {
+            return none;
+        }
+        good = like.call_apart(LimitJob {
+            model,
+            inputs,
+            legs,
+            value,
+            limit,
+            good,
+        });
         if !V::any(good) {
             break;
         }
