@@ -1,6 +1,7 @@
 //! Oracle of the clearance: capsules constructed here from the joints in a pose evaluation, and the distance of segments
 //! in space by `parry3d`.
 
+use kinefront_model::clearance::Layers;
 use kinefront_model::evaluation::{Model, PoseEvaluation};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
@@ -65,132 +66,155 @@ fn anchor(design: &Design, index: usize) -> [f64; 2] {
 }
 
 fn bodies(model: &Model, design: &Design, pose: &Pose, report: &PoseEvaluation) -> Vec<Body> {
-    let layers = &model.settings().bodies.layers;
-    let diameter = 2.0 * design.leg_bar_radius().max(design.platform_bar_radius());
-    let body = |name: String, joints: &[String], ends: [[f64; 2]; 2], layer: f64, radius: f64| Body {
-        name,
-        joints: joints.to_vec(),
-        ends: ends.map(|[x, y]| Vector::new(x, y, layer * diameter)),
-        radius,
+    let leg = |index: usize| LegMembers {
+        model,
+        design,
+        index,
+        platform: pose.position.to_array(),
+        a: anchor(design, index),
+        b: report.b[index],
+        c: report.c[index],
     };
-    let mut all = Vec::new();
-    for leg in 0..3 {
-        let [a, b, c] = ["A", "B", "C"].map(|joint| format!("{joint}{leg}"));
-        let (at_a, at_b, at_c) = (anchor(design, leg), report.b[leg], report.c[leg]);
-        let rj = design.leg_bar_radius();
-        let number = leg + 1;
-        let toward = |from: [f64; 2], to: [f64; 2], length: f64| {
-            let way = [to[0] - from[0], to[1] - from[1]];
-            let fraction = length / way[0].hypot(way[1]);
-            [from[0] + fraction * way[0], from[1] + fraction * way[1]]
+    (0..3).flat_map(|index| leg(index).all()).collect()
+}
+
+/// The joints of a leg, from which its members are built.
+struct LegMembers<'a> {
+    model: &'a Model,
+    design: &'a Design,
+    index: usize,
+    platform: [f64; 2],
+    a: [f64; 2],
+    b: [f64; 2],
+    c: [f64; 2],
+}
+
+impl LegMembers<'_> {
+    fn all(&self) -> Vec<Body> {
+        let mut all = match self.design.architecture().chain_name() {
+            "PRR" => vec![self.slider(), self.link()],
+            "PRP" => vec![self.slider(), self.guide_on_platform()],
+            "PPR" => vec![self.slider(), self.guide_on_slider()],
+            "RRP" => vec![self.crank(), self.guide_on_platform()],
+            "RRR" => vec![self.crank(), self.link()],
+            "RPP" => vec![self.turning_guide(), self.guide_on_platform()],
+            _ => vec![self.telescopic_leg()],
         };
-        let link = body(
-            format!("leg{number}_link"),
-            &[b.clone(), c.clone()],
-            [at_b, at_c],
-            layers.link,
-            rj,
-        );
-        // The guide on the platform, or on a slider, and its two ends.
-        let turn = |[x, y]: [f64; 2], degrees: f64| {
-            let (sine, cosine) = degrees.to_radians().sin_cos();
-            [cosine * x - sine * y, sine * x + cosine * y]
-        };
-        let along = |from: [f64; 2], to: [f64; 2]| {
-            let way = [to[0] - from[0], to[1] - from[1]];
-            let length = way[0].hypot(way[1]);
-            way.map(|part| part / length)
-        };
-        let ends = |at: [f64; 2], way: [f64; 2], length: f64| {
-            let [low, high] = model.settings().legs.geometry.arrangement().guide;
-            let end = |share: f64| [at[0] + share * length * way[0], at[1] + share * length * way[1]];
-            [end(low.min(0.0)), end(high.max(0.0))]
-        };
-        let chain = design.architecture().chain_name();
-        let guide = if chain == "PPR" {
-            let rail = turn(along(at_a, anchor(design, leg + 1)), design.rail_angle_deg());
-            Some(ends(at_b, turn(rail, design.guide_angle_deg()), design.link_length()))
-        } else if chain.ends_with('P') {
-            let arm = along(pose.position.to_array(), at_c);
-            Some(ends(
-                at_c,
-                turn(arm, design.platform_guide_angle_deg()),
-                design.link_length(),
-            ))
-        } else {
-            None
-        };
-        let slider = || {
-            let half = (0.5 * model.settings().bodies.slider_length - model.settings().bodies.slider_half_width) * rj;
-            let rail = turn(along(at_a, anchor(design, leg + 1)), design.rail_angle_deg());
-            let end = |by: f64| [at_b[0] + by * rail[0], at_b[1] + by * rail[1]];
-            let thick = model.settings().bodies.slider_half_width * rj;
-            body(
-                format!("leg{number}_slider"),
-                std::slice::from_ref(&b),
-                [end(-half), end(half)],
-                layers.slider,
-                thick,
-            )
-        };
-        let crank = || {
-            body(
-                format!("leg{number}_crank"),
-                &[a.clone(), b.clone()],
-                [at_a, at_b],
-                layers.crank,
-                rj,
-            )
-        };
-        let guide = guide.map(|ends| {
-            body(
-                format!("leg{number}_guide"),
-                &[b.clone(), c.clone()],
-                ends,
-                layers.guide,
-                rj,
-            )
-        });
-        match chain {
-            "PRR" => all.extend([slider(), link]),
-            "PRP" | "PPR" => all.extend([slider()].into_iter().chain(guide)),
-            "RRP" => all.extend([crank()].into_iter().chain(guide)),
-            "RRR" => all.extend([crank(), link]),
-            "RPP" => {
-                let arm = along(pose.position.to_array(), at_c);
-                let way = turn(arm, design.platform_guide_angle_deg() + design.guide_angle_deg());
-                let turning = body(
-                    format!("leg{number}_turning_guide"),
-                    &[a, b.clone()],
-                    ends(at_a, way, design.proximal_length()),
-                    layers.turning_guide,
-                    rj,
-                );
-                all.extend([turning].into_iter().chain(guide));
-            }
-            _ => {
-                let shortest = model.settings().legs.telescopic_shortest;
-                let rod = (1.0 - shortest.min(0.5)) * design.link_length();
-                let length = (at_c[0] - at_a[0]).hypot(at_c[1] - at_a[1]);
-                let tail = if rod > length { toward(at_c, at_a, rod) } else { at_a };
-                all.push(body(
-                    format!("leg{number}_telescopic_leg"),
-                    &[a, c.clone()],
-                    [tail, at_c],
-                    layers.telescopic_leg,
-                    rj,
-                ));
-            }
-        }
-        all.push(body(
-            format!("platform_bar{number}"),
-            &[c, "P".to_owned()],
-            [at_c, pose.position.to_array()],
-            layers.platform,
-            design.platform_bar_radius(),
-        ));
+        all.push(self.platform_bar());
+        all
     }
-    all
+
+    /// A member with the radius of the bars of the legs; `joints` are the letters of its joints.
+    fn body(&self, name: &str, joints: &[&str], ends: [[f64; 2]; 2], layer: f64) -> Body {
+        let design = self.design;
+        let diameter = 2.0 * design.leg_bar_radius().max(design.platform_bar_radius());
+        Body {
+            name: format!("leg{}_{name}", self.index + 1),
+            joints: joints.iter().map(|joint| format!("{joint}{}", self.index)).collect(),
+            ends: ends.map(|[x, y]| Vector::new(x, y, layer * diameter)),
+            radius: design.leg_bar_radius(),
+        }
+    }
+
+    fn layers(&self) -> &Layers {
+        &self.model.settings().bodies.layers
+    }
+
+    /// Direction of the rail.
+    fn rail(&self) -> [f64; 2] {
+        let way = direction(self.a, anchor(self.design, self.index + 1));
+        turned(way, self.design.rail_angle_deg())
+    }
+
+    /// Direction of the arm of the platform.
+    fn arm(&self) -> [f64; 2] {
+        direction(self.platform, self.c)
+    }
+
+    fn link(&self) -> Body {
+        self.body("link", &["B", "C"], [self.b, self.c], self.layers().link)
+    }
+
+    fn crank(&self) -> Body {
+        self.body("crank", &["A", "B"], [self.a, self.b], self.layers().crank)
+    }
+
+    fn slider(&self) -> Body {
+        let bodies = &self.model.settings().bodies;
+        let half = (0.5 * bodies.slider_length - bodies.slider_half_width) * self.design.leg_bar_radius();
+        let rail = self.rail();
+        let ends = [-half, half].map(|by| moved(self.b, by, rail));
+        Body {
+            radius: bodies.slider_half_width * self.design.leg_bar_radius(),
+            ..self.body("slider", &["B"], ends, bodies.layers.slider)
+        }
+    }
+
+    /// The two ends of a guide about the joint that it is fixed to.
+    fn guide_ends(&self, at: [f64; 2], way: [f64; 2], length: f64) -> [[f64; 2]; 2] {
+        let [low, high] = self.model.settings().legs.geometry.arrangement().guide;
+        [low.min(0.0), high.max(0.0)].map(|share| moved(at, share * length, way))
+    }
+
+    fn guide_on_slider(&self) -> Body {
+        let way = turned(self.rail(), self.design.guide_angle_deg());
+        let ends = self.guide_ends(self.b, way, self.design.link_length());
+        self.body("guide", &["B", "C"], ends, self.layers().guide)
+    }
+
+    fn guide_on_platform(&self) -> Body {
+        let way = turned(self.arm(), self.design.platform_guide_angle_deg());
+        let ends = self.guide_ends(self.c, way, self.design.link_length());
+        self.body("guide", &["B", "C"], ends, self.layers().guide)
+    }
+
+    fn turning_guide(&self) -> Body {
+        let degrees = self.design.platform_guide_angle_deg() + self.design.guide_angle_deg();
+        let ends = self.guide_ends(self.a, turned(self.arm(), degrees), self.design.proximal_length());
+        self.body("turning_guide", &["A", "B"], ends, self.layers().turning_guide)
+    }
+
+    fn telescopic_leg(&self) -> Body {
+        let shortest = self.model.settings().legs.telescopic_shortest;
+        let rod = (1.0 - shortest.min(0.5)) * self.design.link_length();
+        let length = (self.c[0] - self.a[0]).hypot(self.c[1] - self.a[1]);
+        let tail = if rod > length {
+            moved(self.c, rod, direction(self.c, self.a))
+        } else {
+            self.a
+        };
+        self.body(
+            "telescopic_leg",
+            &["A", "C"],
+            [tail, self.c],
+            self.layers().telescopic_leg,
+        )
+    }
+
+    fn platform_bar(&self) -> Body {
+        let mut bar = self.body("platform_bar", &["C"], [self.c, self.platform], self.layers().platform);
+        bar.joints.push("P".to_owned());
+        Body {
+            name: format!("platform_bar{}", self.index + 1),
+            radius: self.design.platform_bar_radius(),
+            ..bar
+        }
+    }
+}
+
+fn turned([x, y]: [f64; 2], degrees: f64) -> [f64; 2] {
+    let (sine, cosine) = degrees.to_radians().sin_cos();
+    [cosine * x - sine * y, sine * x + cosine * y]
+}
+
+fn direction(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let length = way[0].hypot(way[1]);
+    way.map(|part| part / length)
+}
+
+fn moved(from: [f64; 2], by: f64, way: [f64; 2]) -> [f64; 2] {
+    [from[0] + by * way[0], from[1] + by * way[1]]
 }
 
 fn distance(a: &Body, b: &Body) -> f64 {
