@@ -245,12 +245,79 @@ impl TaylorModel {
 
     /// Whether every value is above 0. A comparison with NaN is false, so that nothing is proved from it.
     pub fn is_positive(&self) -> bool {
-        self.range()[0] > 0.0
+        let [lower, upper] = self.range();
+        // Where it is not so in the middle, nothing is to be found.
+        lower > 0.0 || (self.constant > self.remainder && upper > 0.0 && self.least_by_squares() > 0.0)
     }
 
     /// Whether every value is below 0; not so with NaN.
     pub fn is_negative(&self) -> bool {
         self.range()[1] < 0.0
+    }
+
+    /// Returns a lower bound that is better than that of the range where the polynomial is nearly constant along a direction in which several
+    /// variables change; NaN where no number is known.
+    ///
+    /// With `b_k > 0`, `b_k ε_k² + (a_k + Σ b_kj ε_j) ε_k ≥ −(a_k + Σ b_kj ε_j)²/(4 b_k)`, whatever `ε_k` is: a square is left out, and what
+    /// remains is a polynomial of the other variables. Variables are left out in turn, and the best of all bounds counts. `slack` covers the
+    /// rounding of the coefficients, as [`TaylorModel`] explains.
+    fn least_by_squares(&self) -> f64 {
+        /// A vertex farther outside the box, as a multiple of its half width, makes a square too large to be left out.
+        const FAR: f64 = 4.0;
+        let mut rest = *self;
+        let mut best = f64::NEG_INFINITY;
+        let mut slack = 0.0;
+        for _ in 0..VARIABLES {
+            let is_curved = |k: &usize| rest.square[*k] > 0.0 && rest.linear[*k].abs() <= 2.0 * FAR * rest.square[*k];
+            let coupled = |k: usize| -> f64 {
+                let with = PAIRS.iter().zip(&rest.mixed).filter(|(pair, _)| pair.contains(&k));
+                with.map(|(_, b)| b.abs()).sum()
+            };
+            let Some(k) = (0..VARIABLES)
+                .filter(is_curved)
+                .max_by(|i, j| coupled(*i).total_cmp(&coupled(*j)))
+            else {
+                break;
+            };
+            slack += rest.leave_out(k);
+            let lower = rest.range()[0] - slack;
+            if lower.is_nan() {
+                return f64::NAN;
+            }
+            best = best.max(lower);
+        }
+        best
+    }
+
+    /// Leaves out the square of a variable with a positive coefficient; returns a bound of the rounding errors of all coefficients together.
+    fn leave_out(&mut self, k: usize) -> f64 {
+        let (per, a) = (0.25 / self.square[k], self.linear[k]);
+        let with = |j: usize| {
+            PAIRS
+                .iter()
+                .position(|pair| pair.contains(&k) && pair.contains(&j) && j != k)
+        };
+        let coupling = [0, 1, 2].map(|j| with(j).map_or(0.0, |pair| self.mixed[pair]));
+        let mut magnitude = self.size();
+        let mut less = |value: &mut f64, by: f64| {
+            *value -= by;
+            magnitude += 2.0 * by.abs();
+        };
+        less(&mut self.constant, per * a * a);
+        for j in 0..VARIABLES {
+            less(&mut self.linear[j], 2.0 * per * a * coupling[j]);
+            less(&mut self.square[j], per * coupling[j] * coupling[j]);
+        }
+        for (value, [i, j]) in self.mixed.iter_mut().zip(PAIRS) {
+            less(value, 2.0 * per * coupling[i] * coupling[j]);
+        }
+        (self.linear[k], self.square[k]) = (0.0, 0.0);
+        for (value, pair) in self.mixed.iter_mut().zip(PAIRS) {
+            if pair.contains(&k) {
+                *value = 0.0;
+            }
+        }
+        16.0 * ROUNDOFF * magnitude
     }
 
     /// Returns a lower bound of the polynomial and the remainder without the terms of the variable `index` alone.

@@ -695,7 +695,6 @@ fn other_definitions_are_certified() {
     assert!(10 * count > 8 * closed.len());
 }
 
-/// The bound over all home orientations is above the lower bound at the best one, and not far from the radius of the fine grid.
 /// The error of the position has its largest value in one of many directions, which are nearly equal: a proof bounds each by itself, and
 /// needs no more boxes than for a stiffness.
 #[test]
@@ -762,6 +761,30 @@ fn a_stiffness_that_is_least_where_its_eigenvalues_are_equal_is_proved() {
     assert_eq!(found.violation.expect("a pose").scalar, PoseScalar::StiffnessXy);
 }
 
+/// A slider and a joint of the platform pass each other along a surface of poses, where their clearance exceeds the required one by little. The
+/// direction between the two joints, which are near each other, turns fast, and the clearance is nearly constant where several coordinates
+/// change together.
+#[test]
+fn joints_that_pass_each_other_are_proved_apart() {
+    let text = "3-PRR R=4 r=1.565331380727554 Lb=2.657635302229482 rj=0.023993594255565978 rp=0.06409684361856031";
+    let design: Design = text.parse().expect("a design");
+    let certified = |clearance: f64| {
+        let model = model(|settings| settings.thresholds.set(PoseScalar::Clearance, Some(clearance)));
+        let options = CertifyOptions {
+            phi_deg: 18.0,
+            claimed_radius: 1.6122,
+            max_boxes: 40_000,
+            ..CertifyOptions::default()
+        };
+        model.certify(&design, &options).expect("a certificate")
+    };
+    let found = certified(0.005);
+    assert_eq!(found.verdict, Verdict::Proved, "{found:?}");
+    let missed = certified(0.0055);
+    assert_eq!(missed.verdict, Verdict::Refuted, "{missed:?}");
+    assert_eq!(missed.violation.expect("a pose").scalar, PoseScalar::Clearance);
+}
+
 /// The stiffness out of the plane is nearly the threshold in a large part of this workspace, and its enclosure on rails that bend was too
 /// wide at a point far from where force and moment are decoupled.
 #[test]
@@ -819,6 +842,7 @@ fn a_natural_frequency_is_proved_where_the_stiffness_is_uneven() {
     assert_eq!(missed.violation.expect("a pose").scalar, PoseScalar::NaturalFrequency);
 }
 
+/// The bound over all home orientations is above the lower bound at the best one, and not far from the radius of the fine grid.
 #[test]
 fn the_bound_of_all_homes_encloses_the_radius() {
     let models = other_models();

@@ -60,6 +60,46 @@ fn operations_enclose_what_their_operands_enclose() {
     }
 }
 
+/// A polynomial that is a square of several variables but for little is positive exactly where that little is, and none is called positive
+/// that is not so at every point.
+#[test]
+fn valleys_across_several_variables_are_decided() {
+    let mut numbers = Numbers(7);
+    let square_of = |slopes: [f64; 3], centre: f64, least: f64| {
+        let line = TaylorModel {
+            constant: centre,
+            linear: slopes,
+            ..TaylorModel::exactly(0.0)
+        };
+        line.squared().plus(Interval::exactly(least))
+    };
+    for _ in 0..2000 {
+        let slopes = [numbers.next(), numbers.next(), numbers.next()];
+        let reach = slopes[0].abs() + slopes[1].abs() + slopes[2].abs();
+        // Within the box, the line passes through 0.
+        let centre = 0.9 * reach * numbers.next();
+        assert!(square_of(slopes, centre, 1e-9).is_positive(), "{slopes:?} {centre}");
+        assert!(!square_of(slopes, centre, -1e-9).is_positive(), "{slopes:?} {centre}");
+    }
+    let mut positive = 0;
+    for _ in 0..20_000 {
+        let mut model = numbers.model();
+        model.constant = 0.3 * (model.constant - 1.0);
+        model.square = model.square.map(|term| 2.0 * term);
+        if !model.is_positive() {
+            continue;
+        }
+        positive += usize::from(model.range()[0] < 0.0);
+        let points = (0..200).map(|_| [numbers.next(), numbers.next(), numbers.next()]);
+        let corners = (0..27).map(|index: usize| [index % 3, index / 3 % 3, index / 9].map(|part| part as f64 - 1.0));
+        for point in points.collect::<Vec<_>>().into_iter().chain(corners) {
+            assert!(model.value(point) > model.remainder, "{model:?} at {point:?}");
+        }
+    }
+    // The range alone does not decide all of them.
+    assert!(positive > 100, "{positive}");
+}
+
 /// The same of the numbers of the shared formulas, also where the box decides no comparison and where a root begins at 0.
 #[test]
 fn numbers_of_formulas_enclose_what_their_operands_enclose() {
