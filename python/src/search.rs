@@ -7,7 +7,9 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 
-use kinefront_study::{Event, RunControl, RunSummary, RunWriter, Study, StudySearch, TableRow, spawn_search};
+use kinefront_study::{
+    ConclusionPart, Event, RunControl, RunSummary, RunWriter, Study, StudySearch, TableRow, spawn_search,
+};
 
 use crate::errors::{FileError, of_search};
 use crate::run::PyRun;
@@ -21,13 +23,13 @@ const CHANNEL: usize = 64;
 /// State of a search.
 #[pyclass(name = "Progress", module = "kinefront", frozen, get_all)]
 pub struct PyProgress {
-    /// `search` or `verification`.
+    /// `search`, `verification` or `proofs`.
     phase: &'static str,
     /// Number of the generation.
     generation: usize,
-    /// Designs evaluated so far; in the verification, designs verified.
+    /// Designs evaluated so far, or verified, or proved.
     evaluations: usize,
-    /// Designs to be evaluated, or to be verified.
+    /// Designs to be evaluated, or to be verified, or to be proved.
     budget: usize,
     /// Feasible designs so far.
     feasible: usize,
@@ -68,7 +70,13 @@ impl Collected {
                 self.last = Some(*summary);
                 return Ok(Some(self.progress("search", summary.evaluations, budget)));
             }
-            Event::Verifying { done, total } => return Ok(Some(self.progress("verification", *done, *total))),
+            Event::Concluding { part, done, total } => {
+                let phase = match part {
+                    ConclusionPart::Verification => "verification",
+                    ConclusionPart::Proofs => "proofs",
+                };
+                return Ok(Some(self.progress(phase, *done, *total)));
+            }
             Event::Finished(summary) => {
                 if let Some(writer) = &mut self.writer {
                     writer.finish(summary).map_err(|cause| cause.to_string())?;

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use kinefront_scene::text;
-use kinefront_study::{GenerationSummary, Study};
+use kinefront_study::{ConclusionPart, GenerationSummary, Study};
 
 use super::say;
 
@@ -17,18 +17,54 @@ pub enum Progress {
     /// Nothing is shown (`--quiet`).
     Quiet,
     /// A progress bar on a terminal.
-    Bar(ProgressBar),
+    Bar {
+        /// The bar.
+        bar: ProgressBar,
+        /// The part of the end of the run that it shows.
+        concluding: Option<ConclusionPart>,
+    },
     /// A line of text for each twentieth of the budget.
     Lines {
         /// Total number of evaluations.
         budget: usize,
         /// Number of twentieths of the budget reported so far.
         reported: usize,
-        /// When the verification of the front began, and the number of its fifths reported so far.
-        verifying: Option<(Instant, usize)>,
+        /// What was told last of the end of the run.
+        concluding: Option<Told>,
         /// What prints the lines.
         printer: Printer,
     },
+}
+
+/// What was told of a part of the end of a run.
+pub struct Told {
+    part: ConclusionPart,
+    since: Instant,
+    /// Number of designs at the beginning.
+    first: usize,
+    fifths: usize,
+}
+
+impl Told {
+    fn new(part: ConclusionPart, first: usize) -> Self {
+        Self {
+            part,
+            since: Instant::now(),
+            first,
+            fifths: 0,
+        }
+    }
+
+    /// Returns the time that is left \[s\] if another fifth is done.
+    fn next(&mut self, done: usize, total: usize) -> Option<f64> {
+        let (new, all) = (done.saturating_sub(self.first), total - self.first);
+        let fifths = 5 * new / all.max(1);
+        if new == 0 || fifths <= self.fifths {
+            return None;
+        }
+        self.fifths = fifths;
+        Some(self.since.elapsed().as_secs_f64() * (total - done) as f64 / new as f64)
+    }
 }
 
 /// Prints lines on a thread of its own, so that a terminal that is held, for example by Ctrl-S, does not hold the run. Lines
@@ -81,7 +117,7 @@ impl Progress {
             return Self::Lines {
                 budget,
                 reported,
-                verifying: None,
+                concluding: None,
                 printer,
             };
         }
@@ -90,14 +126,14 @@ impl Progress {
                 "{bar:30.cyan/blue} {pos}/{len} evaluations  {per_sec:.0}  {eta} left  {msg}",
             ));
         keep_ticking(&bar);
-        Self::Bar(bar)
+        Self::Bar { bar, concluding: None }
     }
 
     /// Reports a complete generation.
     pub fn generation(&mut self, study: &Study, summary: &GenerationSummary) {
         match self {
             Self::Quiet => {}
-            Self::Bar(bar) => {
+            Self::Bar { bar, .. } => {
                 bar.set_position(summary.evaluations as u64);
                 bar.set_message(reached(study, summary));
             }
@@ -122,33 +158,37 @@ impl Progress {
         }
     }
 
-    /// Reports the progress of the verification and the proofs of the designs that are reported.
-    pub fn verifying(&mut self, done: usize, total: usize) {
+    /// Reports the progress of a part of the end of the run.
+    pub fn conclusion(&mut self, part: ConclusionPart, done: usize, total: usize) {
+        let (doing, is_done) = match part {
+            ConclusionPart::Verification => ("verifying", "verified"),
+            ConclusionPart::Proofs => ("proving", "proved"),
+        };
         match self {
             Self::Quiet => {}
-            Self::Bar(bar) => {
-                if done == 0 {
-                    bar.set_style(style(
-                        "{bar:30.cyan/blue} {pos}/{len} designs verified and proved  {eta} left",
-                    ));
+            Self::Bar { bar, concluding } => {
+                if *concluding != Some(part) {
+                    *concluding = Some(part);
+                    bar.set_style(style(&format!(
+                        "{{bar:30.cyan/blue}} {{pos}}/{{len}} designs {is_done}  {{eta}} left"
+                    )));
                     bar.reset();
                 }
                 bar.set_length(total as u64);
                 bar.set_position(done as u64);
             }
-            Self::Lines { printer, verifying, .. } => match verifying {
-                None => {
-                    *verifying = Some((Instant::now(), 0));
-                    printer.print(format!("verifying and proving {total} designs of the front"));
+            Self::Lines {
+                printer, concluding, ..
+            } => match concluding {
+                Some(told) if told.part == part => {
+                    if let Some(left) = told.next(done, total) {
+                        printer.print(format!("{is_done} {done}/{total} designs, about {left:.0} s left"));
+                    }
                 }
-                Some((since, fifths)) if 5 * done / total > *fifths => {
-                    *fifths = 5 * done / total;
-                    let left = since.elapsed().as_secs_f64() * (total - done) as f64 / done as f64;
-                    printer.print(format!(
-                        "verified and proved {done}/{total} designs, about {left:.0} s left"
-                    ));
+                _ => {
+                    *concluding = Some(Told::new(part, done));
+                    printer.print(format!("{doing} {} designs of the front", total - done));
                 }
-                Some(_) => {}
             },
         }
     }
@@ -157,7 +197,7 @@ impl Progress {
     pub fn finish(&mut self) {
         match self {
             Self::Quiet => {}
-            Self::Bar(bar) => bar.finish_and_clear(),
+            Self::Bar { bar, .. } => bar.finish_and_clear(),
             Self::Lines { printer, .. } => printer.finish(),
         }
     }

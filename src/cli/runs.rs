@@ -112,7 +112,7 @@ fn watch(events: &Receiver<Arc<Event>>, study: &Study, progress: &mut Progress) 
     for event in events {
         match &*event {
             Event::Generation(summary) => progress.generation(study, summary),
-            Event::Verifying { done, total } => progress.verifying(*done, *total),
+            Event::Concluding { part, done, total } => progress.conclusion(*part, *done, *total),
             Event::Finished(summary) => ended = Ok(summary.clone()),
             Event::Failed(message) => ended = Err(message.clone()),
             Event::Started(_) | Event::Evaluated(_) | Event::Front(_) => {}

@@ -259,6 +259,13 @@ fn piped_progress_is_plain_lines_and_quiet_is_quiet() {
         loud.contains("generation 20: 600/600 evaluations") && !loud.contains('\u{1b}'),
         "{loud}"
     );
+    // The designs that are reported are verified first, then proved.
+    let told = |words: &str| loud.lines().position(|line| line.starts_with(words));
+    assert!(
+        told("verifying ").is_some_and(|verifying| told("proving ").is_some_and(|proving| verifying < proving)),
+        "{loud}"
+    );
+    assert!(!loud.contains(" 0 designs"), "{loud}");
     assert!(output("quiet", &["--quiet"]).stderr.is_empty());
 }
 

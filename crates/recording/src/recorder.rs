@@ -167,7 +167,8 @@ impl Recorder {
                 }
                 Some(Event::Generation(summary)) if self.records => self.generation(summary),
                 Some(Event::Finished(summary)) => self.finished(summary, give_up)?,
-                Some(Event::Generation(_) | Event::Started(_) | Event::Verifying { .. } | Event::Failed(_)) | None => {}
+                Some(Event::Generation(_) | Event::Started(_) | Event::Concluding { .. } | Event::Failed(_)) | None => {
+                }
             }
             if self.pending.len() >= DESIGNS_AT_ONCE || self.written.elapsed() >= WRITE_INTERVAL {
                 self.write_collected()?;

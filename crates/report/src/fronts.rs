@@ -41,7 +41,8 @@ impl Front {
     fn certify(&mut self, study: &Study, problem: &DesignProblem) {
         let shown = self.shown.drain(..).enumerate();
         let shown: Vec<FrontMember> = shown.map(|(id, found)| FrontMember::of(id, found)).collect();
-        let proved = FrontProver::new(problem, &|| true).prove(&shown);
+        let prover = FrontProver::new(problem, &|| true);
+        let proved = shown.par_iter().map(|member| prover.prove(member)).collect();
         let (proved, proofs) = proved_front(proved, shown.len(), study.hypervolume_reference(), shown.len());
         self.shown = proved.into_iter().map(|member| member.evaluation).collect();
         self.proofs = Some(proofs);

@@ -78,7 +78,7 @@ impl Source {
                 Event::Evaluated(batch) => rows.extend(&batch.rows),
                 Event::Finished(summary) => times = Some(summary.times),
                 Event::Failed(message) => broken = Some(message.clone()),
-                Event::Started(_) | Event::Generation(_) | Event::Front(_) | Event::Verifying { .. } => {}
+                Event::Started(_) | Event::Generation(_) | Event::Front(_) | Event::Concluding { .. } => {}
             }
         }
         if worker.join().is_err() {

@@ -21,17 +21,28 @@ pub enum Event {
     /// The archive of non-dominated designs changed. Its members are in the order of the first objective; their workspace radii are those of
     /// the reference grid.
     Front(Vec<Arc<TableRow>>),
-    /// The front is being verified on the fine grid, and its workspaces are being proved.
-    Verifying {
-        /// Number of verifications and proofs that are done.
+    /// The designs that are reported are being verified on the fine grid, or proved.
+    Concluding {
+        /// What is being done.
+        part: ConclusionPart,
+        /// Number of designs of which it is done.
         done: usize,
-        /// Number of all of them.
+        /// Number of all of them, as far as it is known.
         total: usize,
     },
     /// The run ended normally.
     Finished(RunSummary),
     /// The run failed; the text is the error message.
     Failed(String),
+}
+
+/// A part of the end of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ConclusionPart {
+    /// Designs are evaluated, and optimised, on the fine grid.
+    Verification,
+    /// Every pose of their workspaces is proved feasible.
+    Proofs,
 }
 
 /// Information on a run at its start.

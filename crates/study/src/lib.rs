@@ -51,7 +51,9 @@ pub use builtin::{BUILTIN, Builtin};
 pub use certified::CertifiedWorkspace;
 pub use control::RunControl;
 pub use durable::{WriteError, open_regular, read_regular, replace, write_whole};
-pub use events::{Batch, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber};
+pub use events::{
+    Batch, ConclusionPart, EndReason, Event, GenerationSummary, RunSummary, RunTimes, Started, Subscriber,
+};
 pub use front::{FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 pub use kinefront_optimum::ParameterKind;
 pub use levels::{EqualLevel, equal_levels, levels_between};

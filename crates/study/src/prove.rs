@@ -1,7 +1,6 @@
 //! The proofs of the workspaces of a front, and the stronger designs that replace refuted ones (docs/model.md, section 13.5).
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::{DesignProblem, FrontMember, FrontProofs, RefutedDesign, ThickenedDesign};
 use kinefront_model::certify::{Certificate, CertifyOptions, ProofObserver, Verdict, Violation};
@@ -48,6 +47,11 @@ impl ProvedMember {
         }
     }
 
+    /// Returns the member as it was verified, with what was proved of it.
+    pub(super) fn member(&self) -> &FrontMember {
+        &self.member
+    }
+
     /// Returns the design that is reported: the member, or the one instead of it; `None` if neither does what the study requires.
     pub(super) fn reported(&self) -> Option<&FrontMember> {
         match &self.instead {
@@ -81,21 +85,14 @@ impl<'a> FrontProver<'a> {
         self.problem.model()
     }
 
-    /// Proves the workspaces of some designs, on the threads of the pool in which it is called. Of a design whose region stays open, one
-    /// near it with more slack is proved instead, if possible.
-    pub fn prove(&self, members: &[FrontMember]) -> Vec<ProvedMember> {
-        let is_open = |member: &FrontMember| {
-            let is_of_region = member.certified.is_some_and(|certified| certified.is_of_region);
-            is_of_region && !member.is_proved()
-        };
-        let prove = |member: &FrontMember| {
-            let mut proved = self.prove_one(member);
-            if proved.reported().is_some_and(is_open) && (self.goes_on)() {
-                proved.instead = self.proved_with_slack(member).map(|instead| (instead, 0.0));
-            }
-            proved
-        };
-        members.par_iter().map(prove).collect()
+    /// Proves the workspace of a design. If it stays open, one near it with more slack is proved instead, if possible.
+    pub fn prove(&self, member: &FrontMember) -> ProvedMember {
+        let is_open = |member: &FrontMember| member.certified.is_some() && !member.is_proved();
+        let mut proved = self.prove_one(member);
+        if proved.reported().is_some_and(is_open) && (self.goes_on)() {
+            proved.instead = self.proved_with_slack(member).map(|instead| (instead, 0.0));
+        }
+        proved
     }
 
     /// Returns a design near a member that keeps every requirement with more slack, if it is proved.

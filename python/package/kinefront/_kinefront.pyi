@@ -185,7 +185,7 @@ class Table:
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
 
 class Progress:
-    """State of a search."""
+    """State of a search: its phase is ``search``, ``verification`` or ``proofs``."""
 
     phase: str
     generation: int

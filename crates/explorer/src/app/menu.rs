@@ -10,6 +10,7 @@ use super::super::{Panel, Phase, theme};
 use super::shortcuts::SHORTCUTS;
 use super::{Explorer, layout};
 use kinefront_export::Format;
+use kinefront_study::ConclusionPart;
 
 /// Entries of the menu "File" that select a file first.
 const FILE_ENTRIES: [(&str, Purpose); 10] = [
@@ -260,7 +261,10 @@ pub(super) fn phase_name(phase: &Phase) -> &'static str {
         Phase::Ready => "ready",
         Phase::Searching => "searching",
         Phase::Paused => "paused",
-        Phase::Verifying { .. } => "verifying",
+        Phase::Concluding { part, .. } => match part {
+            ConclusionPart::Verification => "verifying",
+            ConclusionPart::Proofs => "proving",
+        },
         Phase::Finished(_) => "finished",
         Phase::Failed => "failed",
         Phase::Opened(_) => "opened",

@@ -5,7 +5,7 @@ use egui::{ComboBox, DragValue, Grid, ProgressBar, Ui};
 use super::progress::ProgressPlot;
 use super::typed;
 use crate::{Phase, Session, theme};
-use kinefront_study::{AlgorithmName, BUILTIN, EndReason};
+use kinefront_study::{AlgorithmName, BUILTIN, ConclusionPart, EndReason};
 
 /// The run panel.
 #[derive(Default)]
@@ -148,7 +148,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
                     session.resume();
                 }
             }
-            Phase::Verifying { .. } => {
+            Phase::Concluding { .. } => {
                 ui.add_enabled(false, egui::Button::new("⏸ Pause"));
             }
             _ => {
@@ -200,9 +200,13 @@ fn progress(ui: &mut Ui, session: &Session) {
     let done = session.store().len();
     let seconds = session.elapsed().as_secs_f64();
     let (fraction, text) = match session.phase() {
-        Phase::Verifying { done, total } => {
+        Phase::Concluding { part, done, total } => {
             let fraction = *done as f32 / (*total).max(1) as f32;
-            (fraction, format!("verifying on the fine grid: {done} of {total}"))
+            let what = match part {
+                ConclusionPart::Verification => "verifying on the fine grid",
+                ConclusionPart::Proofs => "proving the workspaces",
+            };
+            (fraction, format!("{what}: {done} of {total}"))
         }
         _ => (
             done as f32 / budget.max(1) as f32,
@@ -220,7 +224,7 @@ fn progress(ui: &mut Ui, session: &Session) {
             format!("{rate:.0} designs/s, {left:.0} s left")
         }
         Phase::Paused => "paused".to_owned(),
-        Phase::Verifying { .. } => "search finished".to_owned(),
+        Phase::Concluding { .. } => "search finished".to_owned(),
         Phase::Finished(EndReason::Completed) => format!("finished in {seconds:.1} s"),
         Phase::Finished(EndReason::TimeUp) => format!("time limit reached after {seconds:.1} s"),
         Phase::Finished(EndReason::Stagnated) => format!("stagnated after {seconds:.1} s"),

@@ -244,8 +244,8 @@ impl Session {
                 self.generation_times.push(run.elapsed_at(at));
             }
             self.threads = messages.threads.or(self.threads);
-            if let Some((done, total)) = messages.verifying {
-                self.phase = Phase::Verifying { done, total };
+            if let Some((part, done, total)) = messages.conclusion {
+                self.phase = Phase::Concluding { part, done, total };
             }
             if let Some(summary) = messages.finished {
                 run.count_time(false);

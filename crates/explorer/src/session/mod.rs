@@ -27,7 +27,7 @@ use kinefront_model::evaluation::{Evaluation, GridChoice, Model, Quantity};
 use kinefront_model::spatial::Pose;
 use kinefront_recording::{FrontPoint, LiveScene, Viewpoint, VisibleLayers};
 use kinefront_scene::{Field, FieldLegend, StressLegend, WorkspaceProof};
-use kinefront_study::{CertifiedWorkspace, Column, EndReason, GenerationSummary, PreparedStudy, Study};
+use kinefront_study::{CertifiedWorkspace, Column, ConclusionPart, EndReason, GenerationSummary, PreparedStudy, Study};
 
 /// Largest number of designs that can be pinned for comparison.
 pub const MOST_PINS: usize = 4;
@@ -41,11 +41,13 @@ pub enum Phase {
     Searching,
     /// The run is paused between two generations.
     Paused,
-    /// The front is being verified on the fine grid.
-    Verifying {
-        /// Number of designs verified so far.
+    /// The designs that are reported are being verified on the fine grid, or proved.
+    Concluding {
+        /// What is being done.
+        part: ConclusionPart,
+        /// Number of designs of which it is done.
         done: usize,
-        /// Number of designs to verify.
+        /// Number of all of them, as far as it is known.
         total: usize,
     },
     /// The run has finished.
@@ -356,7 +358,7 @@ impl Session {
 
     /// Returns whether a run is in progress.
     pub fn is_running(&self) -> bool {
-        matches!(self.phase, Phase::Searching | Phase::Paused | Phase::Verifying { .. })
+        matches!(self.phase, Phase::Searching | Phase::Paused | Phase::Concluding { .. })
     }
 
     /// Returns the number of worker threads of the run.

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use crate::{FrontEntry, Store};
-use kinefront_study::{Event, GenerationSummary, RunSummary};
+use kinefront_study::{ConclusionPart, Event, GenerationSummary, RunSummary};
 
 /// Messages of a run since the last call of [`Intake::take`].
 #[derive(Debug, Default)]
@@ -18,8 +18,8 @@ pub struct RunMessages {
     pub history: Vec<(GenerationSummary, Instant)>,
     /// Number of worker threads, reported once per run.
     pub threads: Option<usize>,
-    /// Number of designs verified so far, and number of designs to verify.
-    pub verifying: Option<(usize, usize)>,
+    /// Part of the end of the run, number of designs of which it is done, and number of all of them.
+    pub conclusion: Option<(ConclusionPart, usize, usize)>,
     /// Summary of the run, once it has finished.
     pub finished: Option<Box<RunSummary>>,
     /// Reason why the run failed.
@@ -75,7 +75,9 @@ impl Intake {
                     self.put(|messages| messages.front = Some(front));
                 }
                 Event::Generation(summary) => self.put(|messages| messages.history.push((*summary, Instant::now()))),
-                Event::Verifying { done, total } => self.put(|messages| messages.verifying = Some((*done, *total))),
+                Event::Concluding { part, done, total } => {
+                    self.put(|messages| messages.conclusion = Some((*part, *done, *total)));
+                }
                 Event::Finished(summary) => {
                     let front = summary.front.iter().map(FrontEntry::of_member).collect();
                     self.put(|messages| {

@@ -56,7 +56,7 @@ impl Settling<'_> {
 
     /// Returns whether two designs that hold, as places in `held`, are of different families.
     fn are_apart(&self, a: usize, b: usize) -> bool {
-        let design = |place: usize| self.held[place].1.reported().map(|member| member.evaluation.design);
+        let design = |place: usize| self.held[place].reported().map(|member| member.evaluation.design);
         let (Some(a), Some(b)) = (design(a), design(b)) else {
             return false;
         };

@@ -9,6 +9,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::gaps::objectives;
+use super::proofs::Held;
 use super::{Keep, Settling};
 use crate::local::Aim;
 use crate::search::FIRST_DESIGNS;
@@ -45,7 +46,7 @@ impl Settling<'_> {
             let near = problem.evaluate_design(&entry.row.design);
             problem.verify_toward(&near, aim).filter(&adds)
         };
-        self.verify_and_prove(&starts, optimum, Keep::Proved, times, send)
+        self.verify(&starts, optimum, Keep::Proved, times, send)
     }
 
     /// Verifies the designs of a search with one objective near which there is a better optimum than what holds: its first ones, and the
@@ -70,7 +71,7 @@ impl Settling<'_> {
             pairs.filter_map(|(promise, entry)| Some((promise?, entry))).collect();
         promising.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (promise, entry) in promising {
-            let mut held = self.held.iter().filter_map(|(_, proved)| proved.reported());
+            let mut held = self.held.iter().filter_map(Held::reported);
             if held.any(|member| member.objectives()[0] <= promise) {
                 break;
             }

@@ -32,44 +32,59 @@ const BEYOND: f64 = 0.1;
 /// Share of its radius that the best design in an objective keeps as it is improved. A region without a size has no design.
 const RADIUS: f64 = 0.5;
 
+/// The designs that were looked for in gaps and at ends so far.
+#[derive(Default)]
+pub(super) struct Sought {
+    /// The pairs of neighbours between which a design was looked for, once for each time.
+    between: Vec<[usize; 2]>,
+    /// The pairs of a design of which one was started from across a boundary, and of one whose values were aimed at.
+    across: Vec<[usize; 2]>,
+    /// For each objective, the design from which its end was improved.
+    at_ends: Vec<Option<usize>>,
+    /// Number of designs that were looked for in gaps and at ends.
+    count: usize,
+    /// Number of designs that were looked for across boundaries.
+    count_across: usize,
+}
+
 impl Settling<'_> {
     /// Fills the gaps of a front of two or three objectives, and improves its ends; `None` if the run was abandoned.
     ///
     /// The search leaves gaps where the designs that it found end at the same optimum, and its ends are seldom the best designs. Beside a
     /// gap there is an optimum, from which another one with a value in the gap is a short way. Where no gap is left, families of designs are
     /// followed across the boundaries between them, which may leave further gaps. No more designs are looked for than are
-    /// reported, and no more than a third of the evaluations.
+    /// reported, and no more than a third of the evaluations, even if gaps are filled several times.
     pub(super) fn fill_gaps(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
-        let (mut tried, mut crossed): (Vec<[usize; 2]>, Vec<[usize; 2]>) = (Vec::new(), Vec::new());
-        let mut ends: Vec<Option<usize>> = vec![None; self.search.found.reference.len()];
-        let mut left = self.most_wanted();
-        let mut left_across = left / OF_GAPS;
+        let most = self.most_wanted();
+        let mut sought = std::mem::take(&mut self.sought);
+        sought.at_ends.resize(self.search.found.reference.len(), None);
         loop {
             let standing = self.standing();
-            let mut wanted = self.wanted_at_ends(&standing, &mut ends);
-            wanted.extend(self.wanted_between(&standing, &mut tried));
-            wanted.truncate(left);
-            left -= wanted.len();
+            let mut wanted = self.wanted_at_ends(&standing, &mut sought.at_ends);
+            wanted.extend(self.wanted_between(&standing, &mut sought.between));
+            wanted.truncate(most - sought.count);
+            sought.count += wanted.len();
             if wanted.is_empty() {
-                wanted = self.wanted_across(&standing, &mut crossed);
-                wanted.truncate(left_across);
-                left_across -= wanted.len();
+                wanted = self.wanted_across(&standing, &mut sought.across);
+                wanted.truncate(most / OF_GAPS - sought.count_across);
+                sought.count_across += wanted.len();
             }
             if wanted.is_empty() {
                 break;
             }
             self.verify_wanted(&standing, wanted, times, send)?;
         }
+        self.sought = sought;
         Some(())
     }
 
     /// Number of designs that are looked for at most: as many as are reported, and no more than a third of the evaluations.
     pub(super) fn most_wanted(&self) -> usize {
-        let most = self.search.study().optimizer.front_designs;
+        let most = self.most();
         most.max(FEWEST).min(self.search.found.evaluated / EVALUATIONS)
     }
 
-    /// Verifies and proves the optima for some aims, each with the design to start from as a place in `held`, that add something to the
+    /// Verifies the optima for some aims, each with the design to start from as a place in `held`, and keeps those that add something to the
     /// front; `None` if the run was abandoned.
     pub(super) fn verify_wanted(
         &mut self,
@@ -79,14 +94,14 @@ impl Settling<'_> {
         send: &mut dyn FnMut(Event),
     ) -> Option<()> {
         let start = |(near, aim): (usize, Aim)| {
-            let (place, proved) = &self.held[near];
-            Some((*place, (proved.reported()?.evaluation.clone(), aim)))
+            let held = &self.held[near];
+            Some((held.place, (held.reported()?.evaluation.clone(), aim)))
         };
         let starts: Vec<(usize, (Evaluation, Aim))> = wanted.into_iter().filter_map(start).collect();
         let adds = self.adds_to(standing, KEPT);
         let problem = &self.search.problem;
         let verify = |(near, aim): &(Evaluation, Aim)| problem.verify_toward(near, aim).filter(&adds);
-        self.verify_and_prove(&starts, verify, Keep::Proved, times, send)
+        self.verify(&starts, verify, Keep::Proved, times, send)
     }
 
     /// Returns whether a design adds more to the front that stands than `least` designs of a mean share, as a function of its evaluation.
@@ -94,7 +109,7 @@ impl Settling<'_> {
         let points = objectives(standing);
         // Beyond the ends, a design adds something only as the study's own reference point shows it.
         let references = [self.reference_near(&points), self.search.found.reference];
-        let most = self.search.study().optimizer.front_designs;
+        let most = self.most();
         move |found| {
             let found = DesignProblem::outcome(found).objectives;
             let mut shares = references
@@ -107,7 +122,7 @@ impl Settling<'_> {
     /// Returns the designs that are wanted in the largest gaps: each the design to start from, as a place in `held`, and the aim. `tried` are
     /// the pairs of neighbours between which a design was looked for already, once for each time.
     fn wanted_between(&self, standing: &Archive, tried: &mut Vec<[usize; 2]>) -> Vec<(usize, Aim)> {
-        let (points, most) = (objectives(standing), self.search.study().optimizer.front_designs);
+        let (points, most) = (objectives(standing), self.most());
         let mut found = gaps(&points, &self.reference_near(&points));
         found.retain(|gap| gap.share * most as f64 > WORTH);
         found.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -146,7 +161,6 @@ impl Settling<'_> {
             *tried = Some(near);
             let mut aim = self.aim(improved, reference);
             let radius = self.held[near]
-                .1
                 .reported()
                 .map(|member| member.evaluation.workspace_radius());
             for (quantity, value) in &mut aim.held {

@@ -1,10 +1,10 @@
 //! The end of a run: the designs that are reported are selected, verified on the fine grid, and proved.
 //!
 //! A search leaves many more designs than a person looks at. Those that together cover the front best are selected first, and only they
-//! are verified and proved. One that does not hold, or that another one dominates then, is replaced by its neighbours. Gaps that are left are
-//! filled with designs that are optimised for them.
+//! are verified. One that does not hold, or that another one dominates then, is replaced by its neighbours. Gaps that are left are
+//! filled with designs that are optimised for them. Proofs come last, because they take longest, and only of the designs that would be reported.
 
-use std::sync::Arc;
+use std::sync::{Arc, mpsc};
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -12,10 +12,17 @@ use rayon::prelude::*;
 mod families;
 mod first_designs;
 mod gaps;
+mod proofs;
 
-use super::prove::{FrontProver, ProvedMember, proved_front};
+use gaps::Sought;
+use proofs::Held;
+
+use super::prove::proved_front;
 use super::search::{Found, StudySearch};
-use super::{DesignProblem, EndReason, Event, FrontMember, FrontProofs, RunControl, RunSummary, RunTimes, TableRow};
+use super::{
+    ConclusionPart, DesignProblem, EndReason, Event, FrontMember, FrontProofs, RunControl, RunSummary, RunTimes,
+    TableRow,
+};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Design;
 use kinefront_optimize::{Archive, Objectives, hypervolume, scaled, subset};
@@ -104,50 +111,53 @@ enum Keep {
 struct Settling<'a> {
     search: &'a StudySearch,
     control: &'a RunControl,
-    /// The front of the search; with one objective, the best design and its runners-up.
+    /// The front of the search; with one objective, the best design and its runners-up. Designs beside the front come after these.
     candidates: Vec<Arc<TableRow>>,
+    /// The objectives of the front of the search, scaled.
+    points: Vec<Vec<f64>>,
     is_tried: Vec<bool>,
-    /// The designs that hold on the fine grid, each with the place of its candidate.
-    held: Vec<(usize, ProvedMember)>,
+    /// The designs that hold on the fine grid.
+    held: Vec<Held>,
     /// Next id of a design that is not one of the search.
     next_id: usize,
     tried: usize,
     planned: usize,
     /// Number of designs that were looked for beside those of the search, and not found or not kept.
     in_vain: usize,
+    sought: Sought,
 }
 
 impl<'a> Settling<'a> {
     fn new(search: &'a StudySearch, control: &'a RunControl) -> Self {
         let candidates = search.found.candidates();
+        let objectives: Vec<Objectives> = candidates.iter().map(|entry| entry.row.objectives).collect();
         Self {
             search,
             control,
             is_tried: vec![false; candidates.len()],
+            points: scaled(&objectives),
             candidates,
             held: Vec::new(),
             next_id: search.found.evaluated,
             tried: 0,
             planned: 0,
             in_vain: 0,
+            sought: Sought::default(),
         }
     }
 
     /// Settles which designs are reported; `None` if the run was abandoned.
     fn run(mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<Reported> {
-        let study = self.search.study();
-        let most = study.optimizer.front_designs;
-        if study.objectives.len() == 1 {
+        if self.has_one_objective() {
             self.settle_best(times, send)?;
             self.settle_promising(times, send)?;
         } else {
             let objectives: Vec<Objectives> = self.candidates.iter().map(|entry| entry.row.objectives).collect();
-            let points = scaled(&objectives);
-            let chosen = subset(&objectives, &self.search.found.reference, most);
+            let chosen = subset(&objectives, &self.search.found.reference, self.most());
             let wanted = chosen.len();
             self.settle(&chosen, times, send)?;
             for round in 0..ROUNDS {
-                let replacements = self.replacements(&points, wanted, round);
+                let replacements = self.replacements(wanted, round);
                 if replacements.is_empty() {
                     break;
                 }
@@ -156,20 +166,33 @@ impl<'a> Settling<'a> {
             self.follow_first_designs(times, send)?;
             self.fill_gaps(times, send)?;
         }
-        Some(self.reported(most))
+        self.prove_reported(times, send)?;
+        Some(self.reported())
     }
 
-    /// Verifies and proves the best designs, one after the other, until one holds and those that are left promise hardly more. Once one
-    /// holds, only a few more are tried: on the fine grid, all become worse alike.
+    fn has_one_objective(&self) -> bool {
+        self.search.study().objectives.len() == 1
+    }
+
+    /// Number of designs that are reported at most.
+    fn most(&self) -> usize {
+        self.search.study().optimizer.front_designs
+    }
+
+    /// Verifies the best designs that were not tried, one after the other, until one holds and those that are left promise hardly more. Once
+    /// one holds, only a few more are tried: on the fine grid, all become worse alike.
     fn settle_best(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
         /// Relative gain for which no other design is tried.
         const HARDLY: f64 = 1e-5;
         const MORE: usize = 3;
         let mut since_held = 0;
-        for place in 0..self.candidates.len() {
+        for place in 0..self.points.len() {
+            if self.is_tried[place] {
+                continue;
+            }
             let value = self.candidates[place].row.objectives[0];
             let enough = value + HARDLY * value.abs();
-            let mut held = self.held.iter().filter_map(|(_, proved)| proved.reported()).peekable();
+            let mut held = self.held.iter().filter_map(Held::reported).peekable();
             if held.peek().is_some() {
                 since_held += 1;
             }
@@ -181,20 +204,20 @@ impl<'a> Settling<'a> {
         Some(())
     }
 
-    /// Verifies some candidates and proves those that hold; `None` if the run was abandoned.
+    /// Verifies some candidates; `None` if the run was abandoned.
     fn settle(&mut self, places: &[usize], times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
         let problem = &self.search.problem;
         let design = |&place: &usize| (place, self.candidates[place].row.design);
         let designs: Vec<(usize, Design)> = places.iter().map(design).collect();
         let verify = |design: &Design| Some(problem.verify_improved(design));
-        self.verify_and_prove(&designs, verify, Keep::All, times, send)?;
+        self.verify(&designs, verify, Keep::All, times, send)?;
         places.iter().for_each(|&place| self.is_tried[place] = true);
         Some(())
     }
 
-    /// Obtains an evaluation on the fine grid for each of some tasks, if there is one, and proves those that hold; `None` if the run was
+    /// Obtains an evaluation on the fine grid for each of some tasks, if there is one, and keeps those that hold; `None` if the run was
     /// abandoned. Each task has the place of the candidate with which it begins.
-    fn verify_and_prove<T: Sync>(
+    fn verify<T: Sync>(
         &mut self,
         tasks: &[(usize, T)],
         verify: impl Fn(&T) -> Option<Evaluation> + Sync,
@@ -202,71 +225,75 @@ impl<'a> Settling<'a> {
         times: &mut RunTimes,
         send: &mut dyn FnMut(Event),
     ) -> Option<()> {
-        let (control, pool) = (self.control, &self.search.pool);
-        let goes_on = || !control.is_abandoned();
-        let prover = FrontProver::new(&self.search.problem, &goes_on);
-        self.planned += tasks.len();
-        for part in tasks.chunks(4 * self.search.threads()) {
-            send(Event::Verifying {
-                done: self.tried,
-                total: self.planned,
-            });
-            let verifying = Instant::now();
-            let verified = |(_, task): &(usize, T)| goes_on().then(|| verify(task));
-            let evaluations: Option<Vec<_>> = pool.install(|| part.par_iter().map(verified).collect());
-            let mut members = Vec::new();
-            for ((place, _), evaluation) in part.iter().zip(evaluations?) {
-                if let Some(evaluation) = evaluation.filter(Evaluation::is_feasible) {
-                    members.push((*place, self.member(*place, evaluation)));
-                }
-            }
-            times.verification_s += verifying.elapsed().as_secs_f64();
-            let held = self.held.len();
-            self.prove(members, &prover, keep, times);
-            if keep == Keep::Proved {
-                self.in_vain += part.len() - (self.held.len() - held);
-            }
-            if !goes_on() {
-                return None;
-            }
-            self.tried += part.len();
+        if tasks.is_empty() {
+            return Some(());
         }
+        let verifying = Instant::now();
+        self.planned += tasks.len();
+        let (before, total) = (self.tried, self.planned);
+        let tell = |done| {
+            send(Event::Concluding {
+                part: ConclusionPart::Verification,
+                done: before + done,
+                total,
+            });
+        };
+        let evaluations = self.each(tasks, |(_, task)| verify(task), tell)?;
+        self.tried += tasks.len();
+        for ((place, _), evaluation) in tasks.iter().zip(evaluations) {
+            let member = evaluation.filter(Evaluation::is_feasible);
+            let member = member.map(|evaluation| self.member(*place, evaluation));
+            match member.filter(|member| !self.repeats(member)) {
+                Some(member) => self.held.push(Held::new(*place, member, keep)),
+                None if keep == Keep::Proved => self.in_vain += 1,
+                None => {}
+            }
+        }
+        times.verification_s += verifying.elapsed().as_secs_f64();
         Some(())
     }
 
-    /// Proves designs, each with the place of its candidate, and keeps those that repeat no other one.
-    fn prove(&mut self, members: Vec<(usize, FrontMember)>, prover: &FrontProver, keep: Keep, times: &mut RunTimes) {
-        let proving = Instant::now();
-        let (places, members): (Vec<usize>, Vec<FrontMember>) = members.into_iter().unzip();
-        let proved = if self.search.study().workspace.certify {
-            self.search.pool.install(|| prover.prove(&members))
-        } else {
-            members.into_iter().map(ProvedMember::unproved).collect()
-        };
-        for (place, proved) in places.into_iter().zip(proved) {
-            let certified = proved.reported().and_then(|member| member.certified);
-            let is_open = certified.is_some_and(|certified| !certified.is_proved);
-            let is_left_out = is_open && keep == Keep::Proved;
-            if !is_left_out && !self.repeats(&proved) {
-                self.held.push((place, proved));
+    /// Does some tasks on the threads of the search, and tells how many are done after each, beginning with 0; returns the results in the order
+    /// of the tasks, or `None` if the run was abandoned.
+    fn each<T: Sync, R: Send>(
+        &self,
+        tasks: &[T],
+        work: impl Fn(&T) -> R + Sync,
+        mut tell: impl FnMut(usize),
+    ) -> Option<Vec<R>> {
+        let goes_on = || !self.control.is_abandoned();
+        let mut results: Vec<Option<R>> = tasks.iter().map(|_| None).collect();
+        tell(0);
+        self.search.pool.in_place_scope(|scope| {
+            let (sender, received) = mpsc::channel();
+            // A task takes up to seconds, so that each is given to a thread by itself.
+            let tasks = tasks.par_iter().enumerate().with_max_len(1);
+            scope.spawn(|_| {
+                tasks.for_each_with(sender, |sender, (place, task)| {
+                    if goes_on() {
+                        // The receiver lives until all senders are gone.
+                        let _ = sender.send((place, work(task)));
+                    }
+                });
+            });
+            for (done, (place, result)) in received.into_iter().enumerate() {
+                results[place] = Some(result);
+                tell(done + 1);
             }
-        }
-        times.certification_s += proving.elapsed().as_secs_f64();
+        });
+        results.into_iter().collect::<Option<_>>().filter(|_| goes_on())
     }
 
     /// Returns whether a design has the same objectives as one that holds, up to what no table shows: neighbours that are improved can end
     /// at the same optimum.
-    fn repeats(&self, proved: &ProvedMember) -> bool {
-        let Some(member) = proved.reported() else {
-            return false;
-        };
+    fn repeats(&self, member: &FrontMember) -> bool {
         let objectives = member.objectives();
         let is_same = |other: &FrontMember| {
             let others = other.objectives();
             let mut pairs = objectives.iter().zip(others.iter());
             pairs.all(|(a, b)| (a - b).abs() <= SAME * a.abs().max(b.abs()))
         };
-        self.held.iter().filter_map(|(_, held)| held.reported()).any(is_same)
+        self.held.iter().filter_map(Held::reported).any(is_same)
     }
 
     /// The member of the front that a candidate becomes.
@@ -290,8 +317,8 @@ impl<'a> Settling<'a> {
     /// The designs that hold and that no other one of them dominates, as places in `held`.
     fn standing(&self) -> Archive {
         let mut archive = Archive::default();
-        for (index, (_, proved)) in self.held.iter().enumerate() {
-            if let Some(member) = proved.reported() {
+        for (index, held) in self.held.iter().enumerate() {
+            if let Some(member) = held.reported() {
                 archive.insert(index, &[], &DesignProblem::outcome(&member.evaluation));
             }
         }
@@ -299,16 +326,16 @@ impl<'a> Settling<'a> {
     }
 
     /// Returns the candidates that take the place of those that fell: of each the nearest that was not tried, as many as designs are
-    /// missing, and one more in every round, because neighbours may fall together. `points` are the scaled objectives of the candidates.
-    fn replacements(&self, points: &[Vec<f64>], wanted: usize, round: usize) -> Vec<usize> {
-        let standing = self.standing();
+    /// missing, and one more in every round, because neighbours may fall together.
+    fn replacements(&self, wanted: usize, round: usize) -> Vec<usize> {
+        let (standing, points) = (self.standing(), &self.points);
         let missing = match wanted.saturating_sub(standing.len()) {
             0 => return Vec::new(),
             missing => missing + round,
         };
-        let mut stands = vec![false; points.len()];
+        let mut stands = vec![false; self.candidates.len()];
         for member in standing.iter() {
-            stands[self.held[member.id].0] = true;
+            stands[self.held[member.id].place] = true;
         }
         let mut taken = self.is_tried.clone();
         let mut found = Vec::new();
@@ -332,14 +359,14 @@ impl<'a> Settling<'a> {
     }
 
     /// Returns what is reported of the designs that were settled.
-    fn reported(self, most: usize) -> Reported {
-        let reference = self.search.found.reference;
+    fn reported(self) -> Reported {
+        let (reference, most) = (self.search.found.reference, self.most());
         let standing = self.standing();
         let (verified, whole) = (
             standing.len(),
             hypervolume(standing.iter().map(|member| member.objectives), reference),
         );
-        let proved = self.held.into_iter().map(|(_, proved)| proved).collect();
+        let proved = self.held.into_iter().filter_map(Held::into_proved).collect();
         let (front, proofs) = proved_front(proved, self.next_id, reference, most);
         Reported {
             verified,

@@ -232,11 +232,7 @@ impl DesignProblem {
         };
         let goes_on = || true;
         let prover = FrontProver::new(self, &goes_on);
-        let proved = prover.prove(std::slice::from_ref(&member));
-        proved
-            .first()
-            .and_then(|proved| proved.reported().cloned())
-            .unwrap_or(member)
+        prover.prove(&member).reported().cloned().unwrap_or(member)
     }
 }
 
