@@ -121,7 +121,9 @@ fn a_front_with_pockets_is_proved() {
     let thickened = proofs.refuted.iter().filter_map(|refuted| refuted.thickened.as_ref());
     let ids: Vec<usize> = thickened.clone().map(|thickened| thickened.id).collect();
     // Designs that are reported instead of refuted or improved ones are no designs of the search.
-    assert!(ids.len() > 5 && ids.iter().all(|id| *id >= 1500), "{ids:?}");
+    // Only designs that would be reported are proved, so that few pockets are met.
+    assert!(!ids.is_empty() && ids.iter().all(|id| *id >= 1500), "{ids:?}");
+    assert!(proofs.refuted.len() > 5, "{:?}", proofs.refuted);
     let improved = front.iter().filter(|entry| entry.id >= 1500).count();
     assert!(
         2 * improved > front.len(),
