@@ -108,7 +108,7 @@ fn a_front_with_pockets_is_proved() {
             "--seed",
             "7",
         ])
-        .args(["--front", "40", "--quiet", "--no-recording", "--out"])
+        .args(["--front", "100", "--quiet", "--no-recording", "--out"])
         .arg(&out)
         .assert()
         .success();
@@ -121,9 +121,7 @@ fn a_front_with_pockets_is_proved() {
     let thickened = proofs.refuted.iter().filter_map(|refuted| refuted.thickened.as_ref());
     let ids: Vec<usize> = thickened.clone().map(|thickened| thickened.id).collect();
     // Designs that are reported instead of refuted or improved ones are no designs of the search.
-    // Only designs that would be reported are proved, so that few pockets are met.
-    assert!(!ids.is_empty() && ids.iter().all(|id| *id >= 1500), "{ids:?}");
-    assert!(proofs.refuted.len() > 5, "{:?}", proofs.refuted);
+    assert!(ids.len() > 5 && ids.iter().all(|id| *id >= 1500), "{ids:?}");
     let improved = front.iter().filter(|entry| entry.id >= 1500).count();
     assert!(
         2 * improved > front.len(),

@@ -109,6 +109,16 @@ impl FrontMember {
     pub(super) fn is_proved(&self) -> bool {
         self.certified.is_some_and(|certified| certified.is_proved)
     }
+
+    /// Returns whether the proof was tried and not completed.
+    pub(super) fn is_open(&self) -> bool {
+        self.certified.is_some_and(|certified| !certified.is_proved)
+    }
+
+    /// Returns whether nothing of the workspace is proved.
+    pub(super) fn is_empty(&self) -> bool {
+        self.certified.is_some_and(|certified| certified.is_empty())
+    }
 }
 
 impl fmt::Display for FrontProofs {

@@ -87,9 +87,8 @@ impl<'a> FrontProver<'a> {
 
     /// Proves the workspace of a design. If it stays open, one near it with more slack is proved instead, if possible.
     pub fn prove(&self, member: &FrontMember) -> ProvedMember {
-        let is_open = |member: &FrontMember| member.certified.is_some() && !member.is_proved();
         let mut proved = self.prove_one(member);
-        if proved.reported().is_some_and(is_open) && (self.goes_on)() {
+        if proved.reported().is_some_and(FrontMember::is_open) && (self.goes_on)() {
             proved.instead = self.proved_with_slack(member).map(|instead| (instead, 0.0));
         }
         proved
@@ -256,6 +255,13 @@ impl<'a> FrontProver<'a> {
     }
 }
 
+/// Returns the ids of the members of an archive that are reported: at most `most` that together cover the most.
+pub(super) fn selected(archive: &Archive, reference: &Objectives, most: usize) -> Vec<usize> {
+    let objectives: Vec<Objectives> = archive.iter().map(|member| member.objectives).collect();
+    let kept = subset(&objectives, reference, most);
+    kept.into_iter().map(|place| archive[place].id).collect()
+}
+
 /// Returns the front of designs that were proved, in the order of the first objective, and what was found. Stronger designs get the ids
 /// from `next_id` on; at most `most` designs are kept, and `reference` is the reference point of the hypervolume.
 pub fn proved_front(
@@ -294,17 +300,13 @@ pub fn proved_front(
     }
     let mut archive = Archive::default();
     for (place, member) in members.iter().enumerate() {
-        if member.certified.is_none_or(|certified| !certified.is_empty()) {
+        if !member.is_empty() {
             archive.insert(place, &[], &DesignProblem::outcome(&member.evaluation));
         }
     }
     proofs.dropped = dropped + members.len() - archive.len();
-    let objectives: Vec<Objectives> = archive.iter().map(|kept| kept.objectives).collect();
-    let kept = subset(&objectives, &reference, most);
-    let front: Vec<FrontMember> = kept
-        .into_iter()
-        .map(|place| members[archive[place].id].clone())
-        .collect();
+    let kept = selected(&archive, &reference, most);
+    let front: Vec<FrontMember> = kept.into_iter().map(|place| members[place].clone()).collect();
     proofs.proved = front.iter().filter(|member| member.is_proved()).count();
     proofs.open = front.len() - proofs.proved;
     proofs.hypervolume_kg_m = hypervolume(front.iter().map(FrontMember::objectives), reference);

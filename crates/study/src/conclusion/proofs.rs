@@ -3,59 +3,42 @@
 use std::time::Instant;
 
 use super::{Keep, ROUNDS, Settling};
-use crate::prove::{FrontProver, ProvedMember};
+use crate::prove::{FrontProver, ProvedMember, selected};
 use crate::{ConclusionPart, Event, FrontMember, RunTimes};
-use kinefront_optimize::{Objectives, subset};
 
 /// A design that holds on the fine grid.
 pub(super) struct Held {
     /// Place of the candidate with which it began.
     pub place: usize,
-    member: ProvedMember,
+    proved: ProvedMember,
     keep: Keep,
-    state: State,
-}
-
-/// How far the proof of a design has come.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum State {
-    Unproved,
-    Settled,
-    LeftOut,
+    /// Whether its proof was tried.
+    is_examined: bool,
 }
 
 impl Held {
     pub fn new(place: usize, member: FrontMember, keep: Keep) -> Self {
         Self {
             place,
-            member: ProvedMember::unproved(member),
+            proved: ProvedMember::unproved(member),
             keep,
-            state: State::Unproved,
+            is_examined: false,
         }
     }
 
     /// Returns what is reported of the design, as far as it is known; `None` if it has fallen.
     pub fn reported(&self) -> Option<&FrontMember> {
-        let is_empty = |member: &FrontMember| member.certified.is_some_and(|certified| certified.is_empty());
-        let member = self.member.reported().filter(|member| !is_empty(member));
-        member.filter(|_| self.state != State::LeftOut)
+        let member = self.proved.reported().filter(|member| !member.is_empty());
+        member.filter(|_| !self.is_left_out())
     }
 
     /// Returns the design with what is proved, unless it is left out.
     pub fn into_proved(self) -> Option<ProvedMember> {
-        (self.state != State::LeftOut).then_some(self.member)
+        (!self.is_left_out()).then_some(self.proved)
     }
 
-    /// Takes what was proved.
-    fn settle(&mut self, proved: ProvedMember) {
-        let certified = proved.reported().and_then(|member| member.certified);
-        let is_open = certified.is_some_and(|certified| !certified.is_proved);
-        self.state = if is_open && self.keep == Keep::Proved {
-            State::LeftOut
-        } else {
-            State::Settled
-        };
-        self.member = proved;
+    fn is_left_out(&self) -> bool {
+        self.keep == Keep::Proved && self.proved.reported().is_some_and(FrontMember::is_open)
     }
 }
 
@@ -69,7 +52,7 @@ impl Settling<'_> {
         let mut examined = 0;
         for round in 0.. {
             let chosen = self.chosen();
-            let is_unproved = |place: &usize| self.held[*place].state == State::Unproved;
+            let is_unproved = |place: &usize| !self.held[*place].is_examined;
             let unproved: Vec<usize> = chosen.iter().copied().filter(is_unproved).collect();
             if unproved.is_empty() {
                 break;
@@ -85,10 +68,7 @@ impl Settling<'_> {
 
     /// Returns the designs that would be reported, as places in `held`.
     fn chosen(&self) -> Vec<usize> {
-        let standing = self.standing();
-        let objectives: Vec<Objectives> = standing.iter().map(|member| member.objectives).collect();
-        let chosen = subset(&objectives, &self.search.found.reference, self.most());
-        chosen.into_iter().map(|place| standing[place].id).collect()
+        selected(&self.standing(), &self.search.found.reference, self.most())
     }
 
     /// Proves some designs, as places in `held`, after others that were `examined`.
@@ -110,12 +90,11 @@ impl Settling<'_> {
                 total: examined + unproved.len(),
             });
         };
-        let proved = self.each(unproved, |&place| prover.prove(self.held[place].member.member()), tell)?;
+        let proved = self.each(unproved, |&place| prover.prove(self.held[place].proved.member()), tell)?;
         for (&place, proved) in unproved.iter().zip(proved) {
-            self.held[place].settle(proved);
-            if self.held[place].state == State::LeftOut {
-                self.in_vain += 1;
-            }
+            let held = &mut self.held[place];
+            (held.proved, held.is_examined) = (proved, true);
+            self.in_vain += usize::from(held.is_left_out());
         }
         times.certification_s += proving.elapsed().as_secs_f64();
         Some(())

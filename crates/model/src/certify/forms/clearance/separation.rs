@@ -42,21 +42,24 @@ impl Bounds {
 ///
 /// The direction of the shortest line is tried first. Between two ends that are near each other, it turns fast, and with it the projection
 /// of the far end of an axis that is almost normal to it; the normal of that axis separates the two almost as well there, and turns no
-/// faster than the axis. Of the directions that leave something open, that which leaves least is kept.
+/// faster than the axis. Where every direction leaves something open, the one whose least lower bound is largest is kept.
 pub(super) fn separate(a: &AxisEnclosure, b: &AxisEnclosure, distance: f64, found: &mut Enclosures) {
-    let mut best: Option<Separation> = None;
-    for direction in directions(a, b) {
-        let separation = Separation::along(direction, a, b, distance);
-        if separation.open.is_empty() {
+    let Some([shortest, normals @ ..]) = directions(a, b) else {
+        // They cross in the middle of the box.
+        found.push(PoseScalar::Clearance, TaylorModel::exactly(-1.0));
+        return;
+    };
+    let mut best = Separation::along(&shortest, a, b, distance);
+    for normal in normals.iter().filter(|normal| **normal != shortest) {
+        if best.open.is_empty() {
             return;
         }
-        if best.as_ref().is_none_or(|best| separation.least > best.least) {
-            best = Some(separation);
+        let next = Separation::along(normal, a, b, distance);
+        if next.least > best.least {
+            best = next;
         }
     }
-    // Without a direction, the axes cross in the middle of the box.
-    let open = best.map_or_else(|| vec![TaylorModel::exactly(-1.0)], |best| best.open);
-    for value in open {
+    for value in best.open {
         found.push(PoseScalar::Clearance, value);
     }
 }
@@ -65,12 +68,12 @@ pub(super) fn separate(a: &AxisEnclosure, b: &AxisEnclosure, distance: f64, foun
 struct Separation {
     /// The forms that are not proved.
     open: Vec<TaylorModel>,
-    /// The least of their lower bounds, as a length; negative infinity where one is not known.
+    /// The least of their lower bounds, as a length: infinite where nothing is open, and negative infinity where a bound is not known.
     least: f64,
 }
 
 impl Separation {
-    fn along(direction: Direction, a: &AxisEnclosure, b: &AxisEnclosure, distance: f64) -> Self {
+    fn along(direction: &Direction, a: &AxisEnclosure, b: &AxisEnclosure, distance: f64) -> Self {
         let keep = Interval::exactly(distance);
         let (mut open, mut least) = (Vec::new(), f64::INFINITY);
         let mut examine = |value: TaylorModel, scale: f64| {
@@ -84,7 +87,7 @@ impl Separation {
                 open.push(value);
             }
         };
-        match direction {
+        match *direction {
             // All points of the axis to which the direction is normal lie on one side.
             Direction::Normal { of_first, sign } => {
                 let (straight, other) = if of_first { (a, b) } else { (b, a) };
@@ -103,10 +106,10 @@ impl Separation {
                 let longest = square
                     .scaled(half / Interval::exactly(length))
                     .plus(half * Interval::exactly(length));
-                let least = longest.scaled(keep);
+                let kept = longest.scaled(keep);
                 for end in distinct(b) {
                     for start in distinct(a) {
-                        examine(dot(way, difference(end, start)) - least, length);
+                        examine(dot(way, difference(end, start)) - kept, length);
                     }
                 }
             }
@@ -116,6 +119,7 @@ impl Separation {
 }
 
 /// A direction in which one axis may lie apart from another, in the middle of a box.
+#[derive(Clone, Copy, PartialEq)]
 enum Direction {
     /// Normal to one of the axes; `sign` tells to which side of it the other one lies.
     Normal { of_first: bool, sign: f64 },
@@ -124,11 +128,11 @@ enum Direction {
 }
 
 /// Returns directions in which two axes may lie apart, in plain doubles: that of the shortest line between them first, then the normals of
-/// both to the side on which the other one lies; none if they cross.
-fn directions(a: &AxisEnclosure, b: &AxisEnclosure) -> Vec<Direction> {
+/// both to the side on which the other one lies; `None` if they cross.
+fn directions(a: &AxisEnclosure, b: &AxisEnclosure) -> Option<[Direction; 3]> {
     let [first, second] = [a, b].map(middle);
     if crossing(a, b).is_some() {
-        return Vec::new();
+        return None;
     }
     let mut best: Option<(f64, Direction)> = None;
     let mut offer = |square: f64, direction: Direction| {
@@ -141,8 +145,8 @@ fn directions(a: &AxisEnclosure, b: &AxisEnclosure) -> Vec<Direction> {
             offer(length_squared(minus(*q, *p)), Direction::Between { from, to });
         }
     }
-    let mut normals = Vec::new();
-    for (of_first, straight, other, axis) in [(true, &first, &second, a), (false, &second, &first, b)] {
+    let side = |height: f64| if height < 0.0 { -1.0 } else { 1.0 };
+    let normals = [(true, &first, &second, a), (false, &second, &first, b)].map(|(of_first, straight, other, axis)| {
         let along = axis.direction.map(|part| part.constant);
         let places = straight.map(|point| scalar(minus(point, straight[0]), along));
         let (least, most) = places
@@ -152,21 +156,26 @@ fn directions(a: &AxisEnclosure, b: &AxisEnclosure) -> Vec<Direction> {
         for point in other {
             let way = minus(*point, straight[0]);
             let (place, height) = (scalar(way, along), along[0] * way[1] - along[1] * way[0]);
-            let sign = if height < 0.0 { -1.0 } else { 1.0 };
             if place > least && place < most {
-                offer(height * height, Direction::Normal { of_first, sign });
+                offer(
+                    height * height,
+                    Direction::Normal {
+                        of_first,
+                        sign: side(height),
+                    },
+                );
             }
             if height.abs() < nearest.abs() {
                 nearest = height;
             }
         }
-        let sign = if nearest < 0.0 { -1.0 } else { 1.0 };
-        normals.push(Direction::Normal { of_first, sign });
-    }
-    best.map(|(_, direction)| direction)
-        .into_iter()
-        .chain(normals)
-        .collect()
+        Direction::Normal {
+            of_first,
+            sign: side(nearest),
+        }
+    });
+    let (_, shortest) = best?;
+    Some([shortest, normals[0], normals[1]])
 }
 
 /// Encloses the point of an axis that is nearest to another axis in the middle of a box; it lies on the axis in any case.
