@@ -273,22 +273,49 @@ impl Real for EnclosedNumber {
         )
     }
 
+    /// Encloses the magnitude.
+    ///
+    /// On `[l, u]` with `l < 0 < u`, `|x| − m x` with the slope `m = (u + l)/(u − l)` of the chord lies between 0 and the larger of its
+    /// values at the ends.
     fn abs(self) -> Self {
-        let [lower, upper] = self.0.range();
-        if lower >= 0.0 {
-            self
-        } else if upper <= 0.0 {
-            -self
-        } else {
-            // `||x| − |y|| ≤ |x − y|`: the remainder is not counted twice.
-            let (polynomial, remainder) = self.parts();
-            let positive = polynomial.or_zero();
-            (positive + positive - polynomial).widened(remainder)
+        if let Some(sign) = self.0.sure_sign() {
+            return if sign > 0.0 { self } else { -self };
         }
+        // `||x| − |y|| ≤ |x − y|`: the remainder is not counted twice.
+        let (polynomial, remainder) = self.parts();
+        let [lower, upper] = polynomial.0.range();
+        if lower >= 0.0 {
+            return self;
+        }
+        if upper <= 0.0 {
+            return -self;
+        }
+        let slope = (upper + lower) / (upper - lower);
+        if !((-1.0..=1.0).contains(&slope) && remainder >= 0.0) {
+            return Self(Self::UNKNOWN);
+        }
+        let exactly = Interval::exactly;
+        let at_lower = (exactly(1.0) + exactly(slope)) * exactly(-lower);
+        let at_upper = (exactly(1.0) - exactly(slope)) * exactly(upper);
+        let most = Interval::new(0.0, at_lower.upper().max(at_upper.upper()));
+        Self(
+            polynomial
+                .0
+                .times(slope)
+                .plus(most + Interval::new(-remainder, remainder)),
+        )
     }
 
     fn at_least(self, other: Self) -> Comparison {
-        let [lower, upper] = (self.0 - other.0).range();
+        let difference = self.0 - other.0;
+        if let Some(sign) = difference.sure_sign() {
+            return if sign > 0.0 {
+                Comparison::Always
+            } else {
+                Comparison::Never
+            };
+        }
+        let [lower, upper] = difference.range();
         if lower >= 0.0 {
             Comparison::Always
         } else if upper < 0.0 {
@@ -299,7 +326,15 @@ impl Real for EnclosedNumber {
     }
 
     fn exceeds(self, other: Self) -> Comparison {
-        let [lower, upper] = (self.0 - other.0).range();
+        let difference = self.0 - other.0;
+        if let Some(sign) = difference.sure_sign() {
+            return if sign > 0.0 {
+                Comparison::Always
+            } else {
+                Comparison::Never
+            };
+        }
+        let [lower, upper] = difference.range();
         if lower > 0.0 {
             Comparison::Always
         } else if upper <= 0.0 {

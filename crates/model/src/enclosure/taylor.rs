@@ -243,11 +243,19 @@ impl TaylorModel {
         [lower - slack, upper + slack]
     }
 
+    /// Returns the sign that all values have, where few operations tell it; with NaN, none.
+    #[inline]
+    pub fn sure_sign(&self) -> Option<f64> {
+        // The factor covers the rounding of the coefficients and of the sum.
+        let others = self.linear_size() + self.quadratic_size() + self.remainder;
+        let is_sure = self.constant.abs() > others * (1.0 + 64.0 * ROUNDOFF) + 64.0 * ROUNDOFF * self.constant.abs();
+        is_sure.then(|| self.constant.signum())
+    }
+
     /// Whether every value is above 0. A comparison with NaN is false, so that nothing is proved from it.
     pub fn is_positive(&self) -> bool {
-        let [lower, upper] = self.range();
-        // Where it is not so in the middle, nothing is to be found.
-        lower > 0.0 || (self.constant > self.remainder && upper > 0.0 && self.least_by_squares() > 0.0)
+        // Where it is not so in the middle, squares do not help.
+        self.range()[0] > 0.0 || (self.constant > self.remainder && self.least_by_squares() > 0.0)
     }
 
     /// Whether every value is below 0; not so with NaN.

@@ -68,11 +68,11 @@ pub(super) fn add_of_region<L: Leg>(
     if set.is_empty() {
         return;
     }
-    // The search of a prescribed region knows the limited ones that depend on loads, which cost most.
-    let searched = if found.of_loads.is_empty() {
+    // The search of a prescribed region knows the limited ones that take long.
+    let searched = if found.slow.is_empty() {
         ScalarSet::default()
     } else {
-        checker.limited_of_loads()
+        checker.slow_limits()
     };
     let left: ScalarSet = set.iter().filter(|scalar| !searched.contains(*scalar)).collect();
     let window = || found.orientation_grid.window(home);
@@ -80,7 +80,7 @@ pub(super) fn add_of_region<L: Leg>(
     for index in window() {
         for scalar in set.iter().filter(|scalar| searched.contains(*scalar)) {
             let least = &mut least[scalar as usize];
-            *least = least.min(found.of_loads[index][scalar]);
+            *least = least.min(found.slow[index][scalar]);
         }
     }
     for scalar in set.iter() {

@@ -77,7 +77,7 @@ impl Model {
     fn checker_without_clearance(&self, design: &Design, stack: &Stack) -> PoseChecker<AnyLeg> {
         let mut checker = self.checker_in::<AnyLeg>(design, stack);
         checker.set_threshold(PoseScalar::Clearance, None);
-        checker.without_loads().unwrap_or(checker)
+        checker.without_limits(checker.limited_of_loads()).unwrap_or(checker)
     }
 
     /// Returns the orientations \[rad\], and how many of them are within half the rotation range on each side of a home orientation;

@@ -91,25 +91,28 @@ impl<L: Leg> PoseChecker<L> {
         self.computed = self.computed.with(scalar);
     }
 
-    /// Returns the design without the limits that depend on loads; `None` if there are none.
-    pub fn without_loads(&self) -> Option<Self> {
-        let limited = self.limited_of_loads();
-        if limited.is_empty() {
+    /// Returns the design without the limits of some scalars; `None` without such scalars.
+    pub fn without_limits(&self, dropped: ScalarSet) -> Option<Self> {
+        if dropped.is_empty() {
             return None;
         }
         let mut checker = self.clone();
-        for scalar in limited.iter() {
-            checker.set_threshold(scalar, None);
-        }
+        checker.drop_limits(|scalar| dropped.contains(scalar));
         Some(checker)
     }
 
     /// Returns the limited scalars that depend on loads.
     pub fn limited_of_loads(&self) -> ScalarSet {
-        let of_loads = PoseScalar::OF_LOADS.iter().copied();
-        of_loads
-            .filter(|scalar| self.thresholds.get(*scalar).is_some())
-            .collect()
+        self.limited().filter(|scalar| scalar.is_of_loads()).collect()
+    }
+
+    /// Returns the limited scalars that take long.
+    pub fn slow_limits(&self) -> ScalarSet {
+        self.limited().filter(|scalar| scalar.takes_long()).collect()
+    }
+
+    fn limited(&self) -> impl Iterator<Item = PoseScalar> {
+        self.thresholds.iter().map(|(scalar, _)| scalar)
     }
 
     /// Solves the inverse kinematics of all legs at several poses at once.

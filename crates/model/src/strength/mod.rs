@@ -239,7 +239,8 @@ impl<V: Real> LaneJob for StrengthJob<'_, V> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let legs = self.model.legs(self.inputs);
+        let paths = self.model.paths_at(self.inputs);
+        let legs = self.model.legs(self.inputs, &paths);
         let loaded = self.model.loaded(&legs);
         self.model.values(&loaded, self.inputs, self.set)
     }
@@ -341,7 +342,8 @@ impl StrengthModel {
         inputs: &StrengthInputs<EnclosedNumber>,
         set: StrengthSet,
     ) -> [TaylorModel; StrengthValue::COUNT] {
-        let legs = self.legs(inputs);
+        let paths = self.paths_at(inputs);
+        let legs = self.legs(inputs, &paths);
         self.demands(&self.loaded(&legs), inputs, set).map(|number| number.0)
     }
 

@@ -94,7 +94,8 @@ impl StrengthReport {
 impl StrengthModel {
     /// Returns the strength at a pose; `None` at a singular one.
     pub fn report(&self, inputs: &StrengthInputs<f64>) -> Option<StrengthReport> {
-        let legs = self.legs(inputs);
+        let paths = self.paths_at(inputs);
+        let legs = self.legs(inputs, &paths);
         let loaded = self.loaded(&legs);
         let columns = self.columns(&loaded, inputs);
         let mut members = Vec::new();

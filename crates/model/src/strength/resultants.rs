@@ -43,15 +43,15 @@ pub(super) struct Resultants<V> {
 }
 
 /// What the loads on a leg at several poses at once follow from.
-pub(super) struct LegBasis<V: Real> {
-    pub path: PathLanes<V>,
+pub(super) struct LegBasis<'a, V: Real> {
+    pub path: &'a PathLanes<V>,
     /// What lies from each bar on.
     pub from: [Beyond<V>; BARS + 1],
     /// `u_i`, and the moment of the line about `P`.
     pub u: Planar<V>,
     pub moment: V,
     pub transmission: V,
-    pub stiffness: LegStiffness<V>,
+    pub stiffness: &'a LegStiffness<V>,
     /// The inverse of the twists of the joints, as the force and moment at `P` for a unit power of each.
     pub reactions: [[V; 3]; 3],
     /// `g_i⁰`: what the leg transmits at `P` because of its weight in the plane.
@@ -60,7 +60,7 @@ pub(super) struct LegBasis<V: Real> {
 
 /// A leg at several poses at once, with what it transmits.
 pub(super) struct LoadedLeg<'a, V: Real> {
-    basis: &'a LegBasis<V>,
+    basis: &'a LegBasis<'a, V>,
     /// `λ_i`.
     pub line: Ranged<V>,
     /// `g_i` under the given wrench and the weight.
@@ -69,11 +69,11 @@ pub(super) struct LoadedLeg<'a, V: Real> {
     pub share: [[V; 3]; 3],
 }
 
-impl<V: Real> std::ops::Deref for LoadedLeg<'_, V> {
-    type Target = LegBasis<V>;
+impl<'a, V: Real> std::ops::Deref for LoadedLeg<'a, V> {
+    type Target = LegBasis<'a, V>;
 
     #[inline(always)]
-    fn deref(&self) -> &LegBasis<V> {
+    fn deref(&self) -> &LegBasis<'a, V> {
         self.basis
     }
 }
@@ -120,7 +120,7 @@ fn weight_moment<V: Real>(loads: &Loads, beyond: &Beyond<V>, about: Planar<V>) -
 impl StrengthModel {
     /// Returns what the legs transmit at several poses at once.
     #[inline(always)]
-    pub(super) fn loaded<'a, V: Real>(&self, legs: &'a [LegBasis<V>; LEGS]) -> LoadedLegs<'a, V> {
+    pub(super) fn loaded<'a, V: Real>(&self, legs: &'a [LegBasis<'a, V>; LEGS]) -> LoadedLegs<'a, V> {
         let like = legs[0].moment;
         let [fx, fy, fz, mx, my, mz] = self.loads.wrench;
         let mut left = [like.splat(fx), like.splat(fy), like.splat(mz)];
@@ -157,7 +157,7 @@ impl StrengthModel {
     #[inline(always)]
     fn loaded_leg<'a, V: Real>(
         &self,
-        leg: &'a LegBasis<V>,
+        leg: &'a LegBasis<'a, V>,
         (by, left): (&[V; 3], &[V; 3]),
         (wrench, held): (&[V; 3], &[V; 3]),
         bending: &[V; 6],
@@ -185,32 +185,49 @@ impl StrengthModel {
         }
     }
 
+    /// Returns the bars and joints of the legs.
+    #[inline(always)]
+    pub(super) fn paths_at<V: Real>(&self, inputs: &StrengthInputs<V>) -> [PathLanes<V>; LEGS] {
+        [
+            self.paths[0].at(&inputs.legs[0], inputs.arms[0]),
+            self.paths[1].at(&inputs.legs[1], inputs.arms[1]),
+            self.paths[2].at(&inputs.legs[2], inputs.arms[2]),
+        ]
+    }
+
     /// Returns the legs, before the loads are shared.
     #[inline(always)]
-    pub(super) fn legs<V: Real>(&self, inputs: &StrengthInputs<V>) -> [LegBasis<V>; LEGS] {
-        [self.leg(inputs, 0), self.leg(inputs, 1), self.leg(inputs, 2)]
+    pub(super) fn legs<'a, V: Real>(
+        &self,
+        inputs: &'a StrengthInputs<V>,
+        paths: &'a [PathLanes<V>; LEGS],
+    ) -> [LegBasis<'a, V>; LEGS] {
+        [
+            self.leg(inputs, &paths[0], 0),
+            self.leg(inputs, &paths[1], 1),
+            self.leg(inputs, &paths[2], 2),
+        ]
     }
 
     #[inline(always)]
-    fn leg<V: Real>(&self, inputs: &StrengthInputs<V>, index: usize) -> LegBasis<V> {
+    fn leg<'a, V: Real>(&self, inputs: &'a StrengthInputs<V>, path: &'a PathLanes<V>, index: usize) -> LegBasis<'a, V> {
         let leg = &inputs.legs[index];
         let like = leg.moment;
-        let path = self.paths[index].at(leg, inputs.arms[index]);
         let platform = path.bars[2].mass();
         let distal = path.bars[1].mass().and(platform);
         let proximal = path.bars[0].mass().and(distal);
         let from = [proximal, distal, platform, Beyond::nothing(like)];
         let twists = [
-            self.paths[index].twist(&path, 0),
-            self.paths[index].twist(&path, 1),
-            self.paths[index].twist(&path, 2),
+            self.paths[index].twist(path, 0),
+            self.paths[index].twist(path, 1),
+            self.paths[index].twist(path, 2),
         ];
         let reactions = V::inverse_transpose(&twists);
         let mut own = [like.splat(0.0); 3];
         let [is_loaded, _] = self.loads.weighs();
         if is_loaded {
             for joint in 0..LEGS {
-                let beyond = self.beyond_joint(&path, &from, index, joint);
+                let beyond = self.beyond_joint(path, &from, index, joint);
                 let power = dot(&twists[joint], &weight_in_plane(&self.loads, &beyond));
                 own = less(&own, &scaled(&reactions[joint], power));
             }
@@ -221,7 +238,7 @@ impl StrengthModel {
             u: leg.u,
             moment: leg.moment,
             transmission: leg.transmission,
-            stiffness: inputs.stiffness[index],
+            stiffness: &inputs.stiffness[index],
             reactions,
             own,
         }
@@ -286,7 +303,7 @@ impl StrengthModel {
 
     /// Returns `S_i⁻¹ δ_i`: what at `P` keeps the free end of a leg where it is without weight.
     #[inline(always)]
-    fn held<V: Real>(&self, leg: &LegBasis<V>) -> [V; 3] {
+    fn held<V: Real>(&self, leg: &LegBasis<'_, V>) -> [V; 3] {
         match &leg.stiffness.at_centre {
             None => {
                 let nowhere = Planar::new(leg.moment.splat(0.0), leg.moment.splat(0.0));
@@ -302,7 +319,7 @@ impl StrengthModel {
     /// Returns `δ_i`: the displacement along z and the rotations of the free end of a leg under its own weight, where it is fixed to a
     /// point relative to `P`.
     #[inline(always)]
-    fn sag<V: Real>(&self, leg: &LegBasis<V>, of: Planar<V>) -> [V; 3] {
+    fn sag<V: Real>(&self, leg: &LegBasis<'_, V>, of: Planar<V>) -> [V; 3] {
         let zero = leg.moment.splat(0.0);
         let mut sag = [zero; 3];
         for bar in self.first()..BARS {
@@ -329,7 +346,7 @@ impl StrengthModel {
 
     /// Adds what a stretch of a bar contributes, by two Gauss points, which are exact there.
     #[inline(always)]
-    fn add_sag<V: Real>(&self, sag: &mut [V; 3], leg: (&LegBasis<V>, Planar<V>), bar: usize, [from, to]: [V; 2]) {
+    fn add_sag<V: Real>(&self, sag: &mut [V; 3], leg: (&LegBasis<'_, V>, Planar<V>), bar: usize, [from, to]: [V; 2]) {
         let half = (to - from) * from.splat(0.5);
         let middle = (to + from) * from.splat(0.5);
         let apart = half * from.splat(GAUSS);
@@ -341,7 +358,7 @@ impl StrengthModel {
     fn add_sag_at<V: Real>(
         &self,
         sag: &mut [V; 3],
-        (leg, of): (&LegBasis<V>, Planar<V>),
+        (leg, of): (&LegBasis<'_, V>, Planar<V>),
         bar: usize,
         distance: V,
         weight: V,
@@ -365,7 +382,7 @@ const GAUSS: f64 = 0.577_350_269_189_625_8;
 
 /// Returns the row of `A` of a leg.
 #[inline(always)]
-fn row<V: Real>(leg: &LegBasis<V>) -> [V; 3] {
+fn row<V: Real>(leg: &LegBasis<'_, V>) -> [V; 3] {
     [leg.u.x, leg.u.y, leg.moment]
 }
 

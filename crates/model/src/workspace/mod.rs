@@ -8,6 +8,7 @@ mod batch;
 mod columns;
 mod evaluator;
 mod grid;
+mod margins;
 mod orientations;
 pub mod plain;
 mod prescribed;

@@ -1,43 +1,24 @@
 //! The home orientation of a prescribed region: of those that keep all limits, the one with the best objective, and else the one with the
 //! best worst margin (docs/model.md, section 7.4).
 //!
-//! The worst values of an orientation over a few positions of the boundary bound those over the whole region. Windows are
-//! therefore examined best first, and only the orientations of leading windows are examined at all positions.
+//! The worst values of an orientation over a few positions of the boundary bound those over the whole region, and those without limits that
+//! take long bound those with them. Windows are therefore examined best first and in stages: only the orientations of leading windows
+//! are examined at all positions, and only those that still lead then for the limits that take long.
 
 use glam::DVec2;
-use pulp::{Simd, WithSimd};
 
 use super::batch::OrientationLanes;
 use super::columns::Positions;
+use super::margins::Examined;
 use super::region::{RegionPositions, directions};
 use super::regular::{Orientation, RegularWorkspace, orientations};
 use super::{Grid, Region, ValueColumns, WorkspaceSampling, WorkspaceSpec};
-use crate::lanes::{Lanes, MAX_LANES, Planar, Real};
+use crate::lanes::MAX_LANES;
 use crate::mechanism::Leg;
-use crate::pose::{Better, EXAMINED_ALWAYS, MarginUnit, PoseChecker, PoseScalar, PoseScalars, ScalarSet};
-use crate::spatial::LEGS;
+use crate::pose::{PoseChecker, PoseScalar, PoseScalars, ScalarSet};
 
 /// Margin of a window that a singularity cuts: as if a constraint were missed entirely.
 const CUT: f64 = -1.0;
-
-/// What many positions in one orientation have shown.
-#[derive(Clone, Copy)]
-pub(crate) struct Examined {
-    /// The worst margin of the limits.
-    pub margin: f64,
-    /// The worst values of the objective and of the limited scalars that depend on loads, with their signs reversed where smaller values are
-    /// better; infinite for all others.
-    pub kept: PoseScalars<f64>,
-}
-
-impl Examined {
-    fn and(self, other: Self) -> Self {
-        Self {
-            margin: self.margin.min(other.margin),
-            kept: PoseScalars::from_fn(|scalar| self.kept[scalar].min(other.kept[scalar])),
-        }
-    }
-}
 
 /// What orders orientations and windows, or bounds it from above.
 #[derive(Clone, Copy)]
@@ -78,14 +59,27 @@ impl Standing {
     }
 }
 
+/// A part of what there is to examine in an orientation.
+#[derive(Debug, Clone, Copy)]
+enum Stage {
+    /// The positions that are examined first, without the limits that take long.
+    First,
+    /// All other positions, without these limits.
+    Others,
+    /// These limits at the positions that are examined first.
+    SlowAtFirst,
+    /// These limits at all other positions.
+    SlowAtOthers,
+}
+
 /// Worst margins of a design over a region that is prescribed, one orientation at a time.
 pub(crate) struct RegionMargins<'a, L> {
     checker: PoseChecker<L>,
-    /// The same without the limits that depend on loads, which cost most; `None` without such limits.
-    without_loads: Option<PoseChecker<L>>,
+    /// The same without the limits that take long; `None` if there are none.
+    quick: Option<PoseChecker<L>>,
     sampling: &'a WorkspaceSampling,
     step_base: f64,
-    /// Scalars whose worst values are kept; those that depend on loads are not, where their limits are left out.
+    /// Scalars whose worst values are kept; those that take long are not, where their limits are left out.
     kept: ScalarSet,
     /// Orientations of the grid.
     orientations: Vec<Orientation>,
@@ -111,8 +105,8 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         let symmetric = symmetric && matches!(spec.region, Region::Disc(_));
         let (orientations, centres) = orientations(&checker, spec.centre, sampling.orientation_grid());
         let mut margins = Self {
-            kept: checker.limited_of_loads(),
-            without_loads: checker.without_loads(),
+            kept: checker.slow_limits(),
+            quick: checker.without_limits(checker.slow_limits()),
             checker,
             sampling,
             step_base,
@@ -192,26 +186,46 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         self.at(orientation, &self.parts[0]).margin
     }
 
-    /// Returns an upper bound of what they show, which costs less where limits depend on loads; without such limits it is what they show.
-    fn bound_at_first(&self, orientation: usize) -> Examined {
-        let checker = self.without_loads.as_ref().unwrap_or(&self.checker);
-        let without_loads = self.checker.limited_of_loads().complement();
-        let kept = self
-            .kept
-            .iter()
-            .filter(|scalar| without_loads.contains(*scalar))
-            .collect();
-        let Positions { xs, ys, .. } = &self.parts[0];
-        checker.worst_margin(self.oriented(orientation), (xs, ys), self.step_base, kept)
+    /// Returns what a stage shows in one orientation.
+    fn examine(&self, orientation: usize, stage: Stage) -> Examined {
+        let [first, others] = &self.parts;
+        match stage {
+            Stage::First => self.quick_at(orientation, first),
+            Stage::Others => self.quick_at(orientation, others),
+            Stage::SlowAtFirst => self.slow_at(orientation, first),
+            Stage::SlowAtOthers => self.slow_at(orientation, others),
+        }
     }
 
-    /// Returns what all positions show in one orientation, but for what their bound has shown of those that are examined first.
-    fn beyond_bound(&self, orientation: usize) -> Examined {
-        let others = self.at(orientation, &self.parts[1]);
-        match self.without_loads {
-            None => others,
-            Some(_) => self.at(orientation, &self.parts[0]).and(others),
+    /// Returns the stages that show everything, in their order. An objective that takes long is bounded early.
+    fn stages(&self, objective: Option<PoseScalar>) -> &'static [Stage] {
+        const QUICK: [Stage; 2] = [Stage::First, Stage::Others];
+        const SLOW_LAST: [Stage; 4] = [Stage::First, Stage::Others, Stage::SlowAtFirst, Stage::SlowAtOthers];
+        const SLOW_EARLY: [Stage; 4] = [Stage::First, Stage::SlowAtFirst, Stage::Others, Stage::SlowAtOthers];
+        let has_others = self.samples.first < self.samples.all.len();
+        match &self.quick {
+            Some(_) if objective.is_some_and(PoseScalar::takes_long) => &SLOW_EARLY,
+            Some(_) => &SLOW_LAST,
+            None if has_others => &QUICK,
+            None => &QUICK[..1],
         }
+    }
+
+    /// Returns what some positions show without the limits that take long.
+    fn quick_at(&self, orientation: usize, positions: &Positions) -> Examined {
+        let checker = self.quick.as_ref().unwrap_or(&self.checker);
+        let slow = self.checker.slow_limits();
+        let kept = self.kept.iter().filter(|scalar| !slow.contains(*scalar)).collect();
+        let columns = (&positions.xs[..], &positions.ys[..]);
+        checker.worst_margin(self.oriented(orientation), columns, self.step_base, kept)
+    }
+
+    /// Returns what some positions show of the limits that take long alone; it means nothing where a leg does not reach one of them,
+    /// of which the other limits tell.
+    fn slow_at(&self, orientation: usize, positions: &Positions) -> Examined {
+        let columns = (&positions.xs[..], &positions.ys[..]);
+        self.checker
+            .worst_slow_margin(self.oriented(orientation), columns, self.step_base)
     }
 
     /// Returns whether no position that is not examined first has a negative margin in one orientation.
@@ -258,15 +272,14 @@ pub fn search_prescribed<L: Leg>(
     let signs = &margins.signs;
     let standing_of = |found: &Examined| Standing::new(found, objective);
     let mut worst: Vec<Standing> = (0..signs.len())
-        .map(|k| standing_of(&margins.bound_at_first(k)))
+        .map(|k| standing_of(&margins.examine(k, Stage::First)))
         .collect();
-    let has_loads = margins.without_loads.is_some();
-    let are_known = !has_loads && margins.samples.first == margins.samples.all.len();
-    let mut is_known = vec![are_known; worst.len()];
-    let mut of_loads = Vec::new();
-    if has_loads {
-        of_loads = vec![PoseScalars::splat(f64::INFINITY); worst.len()];
-    }
+    let stages = margins.stages(objective);
+    let mut examined = vec![1; worst.len()];
+    let mut slow = match margins.quick {
+        Some(_) => vec![PoseScalars::splat(f64::INFINITY); worst.len()],
+        None => Vec::new(),
+    };
     let of_window = |home: usize, worst: &[Standing]| {
         let mut least = Standing::BEST;
         for k in orientation_grid.window(home) {
@@ -288,21 +301,23 @@ pub fn search_prescribed<L: Leg>(
             }
         });
         let home = homes.start + leader;
-        let unknown = orientation_grid.window(home).find(|&k| !is_known[k]);
-        let Some(k) = unknown else {
+        // Within a window, a stage begins when those before it have ended: they may show that another window is better.
+        let least = orientation_grid.window(home).min_by_key(|&k| examined[k]);
+        let Some((k, &stage)) = least.and_then(|k| Some((k, stages.get(examined[k])?))) else {
             break (home, bounds[leader].margin);
         };
-        let found = margins.beyond_bound(k);
+        let found = margins.examine(k, stage);
+        examined[k] += 1;
         worst[k] = worst[k].and(standing_of(&found));
-        if let Some(of_loads) = of_loads.get_mut(k) {
-            *of_loads = found.kept;
-        }
-        is_known[k] = true;
-        // An orientation belongs to the windows of exactly those home orientations that lie in the window about it.
-        for (place, bound) in bounds.iter_mut().enumerate() {
-            if orientation_grid.window(homes.start + place).any(|other| other == k) {
-                *bound = bound.and(worst[k]);
+        if let Some(slow) = slow.get_mut(k) {
+            for scalar in margins.kept.iter() {
+                slow[scalar] = slow[scalar].min(found.kept[scalar]);
             }
+        }
+        // An orientation belongs to the windows of exactly those home orientations that lie in the window about it.
+        for home in orientation_grid.window(k).filter(|home| homes.contains(home)) {
+            let bound = &mut bounds[home - homes.start];
+            *bound = bound.and(worst[k]);
         }
     };
     let found = RegularWorkspace {
@@ -315,7 +330,7 @@ pub fn search_prescribed<L: Leg>(
         centres: margins.centres,
         directions: margins.directions,
         samples: margins.samples.all,
-        of_loads,
+        slow,
     };
     (found, margin)
 }
@@ -332,161 +347,4 @@ fn signs(values: &ValueColumns, count: usize) -> Vec<f64> {
         })
     };
     (0..count).map(sign).collect()
-}
-
-/// Determines the worst margin over many positions in one orientation, and the worst values of some scalars.
-struct WorstMargin<'a, L> {
-    checker: &'a PoseChecker<L>,
-    oriented: OrientationLanes<'a>,
-    xs: &'a [f64],
-    ys: &'a [f64],
-    base_radius: f64,
-    /// Scalars whose worst values are kept.
-    kept: ScalarSet,
-}
-
-impl<L: Leg> WithSimd for WorstMargin<'_, L> {
-    type Output = Examined;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Examined {
-        let (arms, sign) = self.oriented.lanes(simd);
-        let mut least = sign.splat(f64::INFINITY);
-        let mut least_kept = PoseScalars::splat(least);
-        let limited = self.checker.computed;
-        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
-        for (x, y) in xs.iter().zip(ys) {
-            let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let margin = self.checker.margin_lanes(
-                position,
-                &arms,
-                sign,
-                self.base_radius,
-                limited,
-                (self.kept, &mut least_kept),
-            );
-            least = margin.smaller(least);
-        }
-        let mut kept = PoseScalars::splat(f64::INFINITY);
-        for scalar in self.kept.iter() {
-            kept[scalar] = least_lane(least_kept[scalar]);
-        }
-        Examined {
-            margin: least_lane(least),
-            kept,
-        }
-    }
-}
-
-/// Returns the least number of all lanes.
-#[inline(always)]
-fn least_lane<S: Simd>(numbers: Lanes<S>) -> f64 {
-    let mut lanes = [0.0; MAX_LANES];
-    numbers.store(&mut Lanes::<S>::column_mut(&mut lanes)[0]);
-    lanes[..Lanes::<S>::COUNT].iter().copied().fold(f64::INFINITY, f64::min)
-}
-
-impl<L: Leg> PoseChecker<L> {
-    /// Returns what many positions in one orientation show, in the columns of equal lengths, a multiple of [`MAX_LANES`]; `kept` are the
-    /// scalars whose worst values are returned.
-    fn worst_margin(
-        &self,
-        oriented: OrientationLanes<'_>,
-        (xs, ys): (&[f64], &[f64]),
-        base_radius: f64,
-        kept: ScalarSet,
-    ) -> Examined {
-        assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
-        self.instructions.run(WorstMargin {
-            checker: self,
-            oriented,
-            xs,
-            ys,
-            base_radius,
-            kept,
-        })
-    }
-
-    /// Returns the worst margin of the limits at several poses at once, no less than −1, and less than −1 where a leg does not reach
-    /// the pose. Margins of lengths are divided by `base_radius`. `set` are the scalars that are limited; of those in `kept`, the worst
-    /// values so far are kept.
-    #[inline(always)]
-    fn margin_lanes<V: Real>(
-        &self,
-        position: Planar<V>,
-        arms: &[Planar<V>; LEGS],
-        sign: V,
-        base_radius: f64,
-        set: ScalarSet,
-        (kept, least_kept): (ScalarSet, &mut PoseScalars<V>),
-    ) -> V {
-        let (values, distals) = self.core_lanes(position, arms);
-        let scalars = &values.scalars;
-        let none = sign.splat(-1.0);
-        let per_length = sign.splat(1.0 / base_radius);
-        // A margin that is not a number counts as a constraint that is missed entirely.
-        let mut worst = (scalars[PoseScalar::Reach] * per_length).larger(none);
-        let unreached = none + worst.smaller(sign.splat(0.0));
-        for scalar in [
-            PoseScalar::Dexterity,
-            PoseScalar::StiffnessXy,
-            PoseScalar::StiffnessPhiZ,
-            PoseScalar::StiffnessZ,
-        ] {
-            let margin = limit_margin(scalar, scalars[scalar], self.thresholds.bound(scalar), per_length);
-            worst = worst.smaller(margin.larger(none));
-        }
-        // The determinant must not vanish, so that a margin of 0 is one that is missed.
-        let determinant = scalars[PoseScalar::Determinant] * sign;
-        let vanishing = sign.splat(-f64::MIN_POSITIVE);
-        worst = worst.smaller(
-            determinant
-                .select(determinant.exceeds(sign.splat(0.0)), determinant.smaller(vanishing))
-                .larger(none),
-        );
-        if self.examines_all {
-            let mut scalars = PoseScalars::of_core(scalars);
-            self.fill_on_demand(set, position, arms, &mut scalars);
-            for &scalar in PoseScalar::ALL {
-                if let Some(threshold) = self.thresholds.get(scalar)
-                    && !EXAMINED_ALWAYS.contains(&scalar)
-                {
-                    let margin = limit_margin(scalar, scalars[scalar], threshold, per_length);
-                    worst = worst.smaller(margin.larger(none));
-                }
-            }
-            for scalar in kept.iter() {
-                let reversed = sign.splat(scalar.entry().quantity.better.sign());
-                least_kept[scalar] = (scalars[scalar] * reversed).smaller(least_kept[scalar]);
-            }
-        } else {
-            // Of those that every loop over poses determines, larger values are better.
-            for scalar in kept.iter() {
-                least_kept[scalar] = scalars[scalar].smaller(least_kept[scalar]);
-            }
-        }
-        if let Some(threshold) = self.thresholds.get(PoseScalar::Clearance) {
-            let limit = worst * sign.splat(base_radius) + sign.splat(threshold);
-            let limit = limit.select(values.reachable, sign.splat(f64::NEG_INFINITY));
-            let clearance = self.compute_clearance_apart(position, arms, &distals, limit);
-            worst = worst.smaller(((clearance - sign.splat(threshold)) * per_length).larger(none));
-        }
-        worst.select(values.reachable, unreached)
-    }
-}
-
-/// Returns the margin of a limit at several poses at once, as [`PoseScalar::margin`] defines it; infinite without a limit.
-#[inline(always)]
-fn limit_margin<V: Real>(scalar: PoseScalar, value: V, threshold: f64, per_length: V) -> V {
-    let entry = scalar.entry();
-    let limit = value.splat(threshold);
-    let excess = match entry.quantity.better {
-        Better::Higher => value - limit,
-        Better::Lower => limit - value,
-    };
-    match entry.margin {
-        MarginUnit::BaseRadius => excess * per_length,
-        MarginUnit::Threshold if threshold > 0.0 => excess * value.splat(1.0 / threshold),
-        MarginUnit::Threshold => excess,
-    }
 }

@@ -52,9 +52,9 @@ pub struct RegularWorkspace {
     pub home_sign: f64,
     /// Positions at which a prescribed region was examined; empty for the largest disc.
     pub samples: Vec<DVec2>,
-    /// The worst values over the samples of the limited scalars that depend on loads, for the orientations of the home window and some
+    /// The worst values over the samples of the limited scalars that take long, for the orientations of the home window and some
     /// others, with their signs reversed where smaller values are better; empty for the largest disc, and without such limits.
-    pub of_loads: Vec<PoseScalars<f64>>,
+    pub slow: Vec<PoseScalars<f64>>,
 }
 
 /// Returns the orientations that the search examines, and the values at their centre poses.
@@ -107,7 +107,7 @@ pub fn search<L: Leg>(
         directions: Vec::new(),
         home_sign: 1.0,
         samples: Vec::new(),
-        of_loads: Vec::new(),
+        slow: Vec::new(),
     };
     let step = step_base / grid.ray_steps() as f64;
     let mut search = Search {

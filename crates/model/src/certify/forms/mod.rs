@@ -8,6 +8,7 @@ mod bars;
 mod clearance;
 mod compliances;
 mod motion;
+mod plain;
 mod rails;
 mod reach;
 mod stiffness;
@@ -17,6 +18,7 @@ mod travel;
 use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
 use motion::MotionForms;
+use plain::PlainLimits;
 use reach::ReachForms;
 use strength::{LoadForms, StrengthForms};
 pub(super) use travel::{Travel, TravelForms};
@@ -85,6 +87,8 @@ impl ProvedForms {
 #[derive(Debug, Clone)]
 pub(super) struct Enclosures {
     values: Vec<(PoseScalar, TaylorModel)>,
+    /// Places of the values that are not proved to be positive.
+    open: Vec<usize>,
     /// Whether every constraint could be evaluated: where a leg may not reach, the others have no value.
     pub is_complete: bool,
     /// Whether the forms tell of every part of the box by themselves, so that parts on which they are positive may be cut off.
@@ -97,6 +101,7 @@ impl Enclosures {
     fn new(proved: ProvedForms) -> Self {
         Self {
             values: Vec::with_capacity(3 * LEGS + 8),
+            open: Vec::new(),
             is_complete: true,
             may_contract: true,
             proved,
@@ -104,6 +109,9 @@ impl Enclosures {
     }
 
     fn push(&mut self, scalar: PoseScalar, value: TaylorModel) {
+        if !value.is_positive() {
+            self.open.push(self.values.len());
+        }
         self.values.push((scalar, value));
     }
 
@@ -117,7 +125,7 @@ impl Enclosures {
 
     /// The constraints that are not proved, with their values.
     pub fn open(&self) -> impl Iterator<Item = &(PoseScalar, TaylorModel)> {
-        self.iter().filter(|(_, value)| !value.is_positive())
+        self.open.iter().map(|&place| &self.values[place])
     }
 
     /// The constraints that are proved to be violated, of those at a pose.
@@ -152,6 +160,8 @@ pub(super) struct Forms<'a> {
     loads: LoadForms,
     /// What the limits of a motion need, if there are any.
     motion: Option<MotionForms>,
+    /// The limits that take long, if there are any.
+    plain: Option<PlainLimits>,
 }
 
 impl<'a> Forms<'a> {
@@ -168,6 +178,7 @@ impl<'a> Forms<'a> {
             separations: Separations::new(model, design),
             reach: ReachForms::new(model, design),
             loads: LoadForms::new(design),
+            plain: PlainLimits::new(model, design),
             strength,
             motion,
             frames,

@@ -431,6 +431,11 @@ impl PoseScalar {
         self.is_of_loads() || self.of_motion().is_some()
     }
 
+    /// Returns whether it takes much longer than the other scalars: it depends on the loads of the members, or on a motion.
+    pub(crate) fn takes_long(self) -> bool {
+        self.is_of_loads() || self.of_motion().is_some()
+    }
+
     /// Returns the stricter one of two limits.
     pub fn stricter(self, a: f64, b: f64) -> f64 {
         match self.entry().quantity.better {
