@@ -27,6 +27,17 @@ pub enum Comparison {
     Unknown,
 }
 
+impl Comparison {
+    /// Returns where numbers of one sign, +1 or −1, are above 0.
+    fn of_sign(sign: f64) -> Self {
+        if sign > 0.0 {
+            Comparison::Always
+        } else {
+            Comparison::Never
+        }
+    }
+}
+
 impl BitAnd for Comparison {
     type Output = Self;
 
@@ -309,11 +320,7 @@ impl Real for EnclosedNumber {
     fn at_least(self, other: Self) -> Comparison {
         let difference = self.0 - other.0;
         if let Some(sign) = difference.sure_sign() {
-            return if sign > 0.0 {
-                Comparison::Always
-            } else {
-                Comparison::Never
-            };
+            return Comparison::of_sign(sign);
         }
         let [lower, upper] = difference.range();
         if lower >= 0.0 {
@@ -328,11 +335,7 @@ impl Real for EnclosedNumber {
     fn exceeds(self, other: Self) -> Comparison {
         let difference = self.0 - other.0;
         if let Some(sign) = difference.sure_sign() {
-            return if sign > 0.0 {
-                Comparison::Always
-            } else {
-                Comparison::Never
-            };
+            return Comparison::of_sign(sign);
         }
         let [lower, upper] = difference.range();
         if lower > 0.0 {

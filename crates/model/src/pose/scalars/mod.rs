@@ -431,9 +431,9 @@ impl PoseScalar {
         self.is_of_loads() || self.of_motion().is_some()
     }
 
-    /// Returns whether it takes much longer than the other scalars: it depends on the loads of the members, or on a motion.
+    /// Returns whether it takes much longer than the other scalars: the same ones do that may be missing.
     pub(crate) fn takes_long(self) -> bool {
-        self.is_of_loads() || self.of_motion().is_some()
+        self.may_be_missing()
     }
 
     /// Returns the stricter one of two limits.
