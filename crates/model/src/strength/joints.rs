@@ -28,7 +28,7 @@ impl StrengthModel {
     #[inline(always)]
     pub(super) fn joint_loads<V: Real>(&self, leg: &LoadedLeg<'_, V>, index: usize, joint: usize) -> JointLoads<V> {
         let place = leg.path.joints[joint];
-        let beyond = self.beyond_joint(&leg.path, &leg.from, index, joint);
+        let beyond = self.beyond_joint(leg.path, &leg.from, index, joint);
         let carried = self.resultants(leg, place, &beyond);
         let (u, normal) = (leg.u, leg.u.perp());
         let along = self.about(leg, place, carried.moment, u);
