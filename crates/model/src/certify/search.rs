@@ -163,7 +163,6 @@ impl<'a> Proof<'a> {
 
     /// Returns a constraint that is proved to be violated at a pose, of those that are not proved there.
     fn violated_at(&self, pose: &Pose, proved: ProvedForms) -> Option<PoseScalar> {
-        let proved = self.forms.with_those_kept_at(proved, pose);
         let position = pose.position.to_array().map(Interval::exactly);
         let pose = PoseEnclosure::point(position, Interval::exactly(pose.phi));
         self.forms.enclose_pose(&pose, proved).violated().next()
@@ -537,10 +536,9 @@ impl<'a> Proof<'a> {
     }
 }
 
-/// Returns the constraint that is nearest to its threshold, relative to the size of its value, of those with a value.
+/// Returns the constraint that is nearest to its threshold, relative to the size of its value.
 fn weakest<'a>(values: impl Iterator<Item = &'a (PoseScalar, TaylorModel)>) -> Option<&'a (PoseScalar, TaylorModel)> {
-    let known = values.filter(|(_, value)| !relative_least(value).is_nan());
-    known.min_by(|(_, a), (_, b)| relative_least(a).total_cmp(&relative_least(b)))
+    values.min_by(|(_, a), (_, b)| relative_least(a).total_cmp(&relative_least(b)))
 }
 
 /// Lower bound of a value as a multiple of its size, by which the values of different constraints are compared.

@@ -78,9 +78,6 @@ impl EnclosedNumber {
     }
 
     /// Encloses the larger of the number and 0.
-    ///
-    /// On `[l, u]` with `l < 0 < u`, for every slope `m` between 0 and 1, `max(x, 0) − m x` lies between 0 and the larger of `−m l` and
-    /// `(1 − m) u`.
     fn or_zero(self) -> Self {
         let [lower, upper] = self.0.range();
         if lower >= 0.0 {
@@ -89,14 +86,24 @@ impl EnclosedNumber {
         if upper <= 0.0 {
             return Self(TaylorModel::exactly(0.0));
         }
-        let slope = upper / (upper - lower);
-        if !(0.0..=1.0).contains(&slope) {
+        self.bent_at_zero([lower, upper], [0.0, upper])
+    }
+
+    /// Encloses a function of the number that vanishes at 0 and is linear on both sides of it, with the larger slope above 0; `values` are
+    /// those at the ends of the range `[l, u]`, with `l < 0 < u`.
+    ///
+    /// With the slope `m` of the chord, which lies between those of both sides also if it is rounded, `f(x) − m x` lies between 0 and the
+    /// larger of its values at the ends.
+    fn bent_at_zero(self, [lower, upper]: [f64; 2], values: [f64; 2]) -> Self {
+        let slope = (values[1] - values[0]) / (upper - lower);
+        if !slope.is_finite() {
             return Self(Self::UNKNOWN);
         }
-        let exactly = Interval::exactly;
-        let at_lower = exactly(-slope) * exactly(lower);
-        let at_upper = (exactly(1.0) - exactly(slope)) * exactly(upper);
-        let most = at_lower.upper().max(at_upper.upper());
+        let above_chord = |end: f64, value: f64| {
+            let above = Interval::exactly(value) - Interval::exactly(slope) * Interval::exactly(end);
+            above.upper()
+        };
+        let most = above_chord(lower, values[0]).max(above_chord(upper, values[1]));
         Self(self.0.times(slope).plus(Interval::new(0.0, most)))
     }
 
@@ -284,10 +291,6 @@ impl Real for EnclosedNumber {
         )
     }
 
-    /// Encloses the magnitude.
-    ///
-    /// On `[l, u]` with `l < 0 < u`, `|x| − m x` with the slope `m = (u + l)/(u − l)` of the chord lies between 0 and the larger of its
-    /// values at the ends.
     fn abs(self) -> Self {
         if let Some(sign) = self.0.sure_sign() {
             return if sign > 0.0 { self } else { -self };
@@ -296,25 +299,13 @@ impl Real for EnclosedNumber {
         let (polynomial, remainder) = self.parts();
         let [lower, upper] = polynomial.0.range();
         if lower >= 0.0 {
-            return self;
+            self
+        } else if upper <= 0.0 {
+            -self
+        } else {
+            let magnitude = polynomial.bent_at_zero([lower, upper], [-lower, upper]);
+            magnitude.widened(remainder)
         }
-        if upper <= 0.0 {
-            return -self;
-        }
-        let slope = (upper + lower) / (upper - lower);
-        if !((-1.0..=1.0).contains(&slope) && remainder >= 0.0) {
-            return Self(Self::UNKNOWN);
-        }
-        let exactly = Interval::exactly;
-        let at_lower = (exactly(1.0) + exactly(slope)) * exactly(-lower);
-        let at_upper = (exactly(1.0) - exactly(slope)) * exactly(upper);
-        let most = Interval::new(0.0, at_lower.upper().max(at_upper.upper()));
-        Self(
-            polynomial
-                .0
-                .times(slope)
-                .plus(most + Interval::new(-remainder, remainder)),
-        )
     }
 
     fn at_least(self, other: Self) -> Comparison {

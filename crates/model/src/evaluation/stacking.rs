@@ -76,8 +76,8 @@ impl Model {
     /// Prepares a design without the limits of the clearance and of scalars that depend on loads, which take long.
     fn checker_without_clearance(&self, design: &Design, stack: &Stack) -> PoseChecker<AnyLeg> {
         let mut checker = self.checker_in::<AnyLeg>(design, stack);
-        checker.set_threshold(PoseScalar::Clearance, None);
-        checker.without_limits(checker.limited_of_loads()).unwrap_or(checker)
+        checker.drop_limits(|scalar| scalar == PoseScalar::Clearance || scalar.is_of_loads());
+        checker
     }
 
     /// Returns the orientations \[rad\], and how many of them are within half the rotation range on each side of a home orientation;

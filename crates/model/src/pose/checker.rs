@@ -91,28 +91,19 @@ impl<L: Leg> PoseChecker<L> {
         self.computed = self.computed.with(scalar);
     }
 
-    /// Returns the design without the limits of some scalars; `None` without such scalars.
-    pub fn without_limits(&self, dropped: ScalarSet) -> Option<Self> {
-        if dropped.is_empty() {
+    /// Returns the design without the limits that take long; `None` if there are none.
+    pub fn without_slow_limits(&self) -> Option<Self> {
+        if self.slow_limits().is_empty() {
             return None;
         }
         let mut checker = self.clone();
-        checker.drop_limits(|scalar| dropped.contains(scalar));
+        checker.drop_limits(PoseScalar::takes_long);
         Some(checker)
-    }
-
-    /// Returns the limited scalars that depend on loads.
-    pub fn limited_of_loads(&self) -> ScalarSet {
-        self.limited().filter(|scalar| scalar.is_of_loads()).collect()
     }
 
     /// Returns the limited scalars that take long.
     pub fn slow_limits(&self) -> ScalarSet {
-        self.limited().filter(|scalar| scalar.takes_long()).collect()
-    }
-
-    fn limited(&self) -> impl Iterator<Item = PoseScalar> {
-        self.thresholds.iter().map(|(scalar, _)| scalar)
+        self.thresholds.that_take_long()
     }
 
     /// Solves the inverse kinematics of all legs at several poses at once.

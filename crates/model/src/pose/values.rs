@@ -295,6 +295,12 @@ impl Thresholds {
             .filter_map(|scalar| Some((scalar, self.get(scalar)?)))
     }
 
+    /// Returns the limited scalars that take long.
+    pub(crate) fn that_take_long(&self) -> ScalarSet {
+        let limited = self.iter().map(|(scalar, _)| scalar);
+        limited.filter(|scalar| scalar.takes_long()).collect()
+    }
+
     /// Returns whether a limit is of a scalar that depends on a motion.
     #[inline(always)]
     pub(crate) fn limit_motion(&self) -> bool {

@@ -17,8 +17,9 @@ pub(super) struct Examined {
     pub kept: PoseScalars<f64>,
 }
 
-/// Determines the worst margin over many positions in one orientation, and the worst values of some scalars.
-struct WorstMargin<'a, L> {
+/// Determines the worst margin over many positions in one orientation, and the worst values of some scalars: of all limits, or of those that
+/// take long alone if `SLOW` says so.
+struct WorstMargin<'a, L, const SLOW: bool> {
     checker: &'a PoseChecker<L>,
     oriented: OrientationLanes<'a>,
     xs: &'a [f64],
@@ -28,7 +29,7 @@ struct WorstMargin<'a, L> {
     kept: ScalarSet,
 }
 
-impl<L: Leg> WithSimd for WorstMargin<'_, L> {
+impl<L: Leg, const SLOW: bool> WithSimd for WorstMargin<'_, L, SLOW> {
     type Output = Examined;
 
     #[inline(always)]
@@ -36,61 +37,26 @@ impl<L: Leg> WithSimd for WorstMargin<'_, L> {
         let (arms, sign) = self.oriented.lanes(simd);
         let mut least = sign.splat(f64::INFINITY);
         let mut least_kept = PoseScalars::splat(least);
-        let limited = self.checker.computed;
+        let (checker, base_radius, computed) = (self.checker, self.base_radius, self.checker.computed);
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         for (x, y) in xs.iter().zip(ys) {
             let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let margin = self.checker.margin_lanes(
-                position,
-                &arms,
-                sign,
-                self.base_radius,
-                limited,
-                (self.kept, &mut least_kept),
-            );
+            let kept = (self.kept, &mut least_kept);
+            let margin = if SLOW {
+                checker.slow_margin_lanes(position, &arms, base_radius, kept)
+            } else {
+                checker.margin_lanes(position, &arms, sign, base_radius, computed, kept)
+            };
             least = margin.smaller(least);
         }
-        examined(least, &least_kept, self.kept)
-    }
-}
-
-/// Determines the same of the limits that take long alone.
-struct WorstSlowMargin<'a, L> {
-    checker: &'a PoseChecker<L>,
-    oriented: OrientationLanes<'a>,
-    xs: &'a [f64],
-    ys: &'a [f64],
-    base_radius: f64,
-    /// The scalars that are limited and take long.
-    limited: ScalarSet,
-}
-
-impl<L: Leg> WithSimd for WorstSlowMargin<'_, L> {
-    type Output = Examined;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Examined {
-        let (arms, sign) = self.oriented.lanes(simd);
-        let (limited, per_length) = (self.limited, sign.splat(1.0 / self.base_radius));
-        let mut least = sign.splat(f64::INFINITY);
-        let mut least_kept = PoseScalars::splat(least);
-        let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
-        for (x, y) in xs.iter().zip(ys) {
-            let position = Planar::new(Lanes::load(simd, x), Lanes::load(simd, y));
-            let mut scalars = PoseScalars::splat(sign);
-            self.checker.fill_on_demand(limited, position, &arms, &mut scalars);
-            for scalar in limited.iter() {
-                let margin = limit_margin(
-                    scalar,
-                    scalars[scalar],
-                    self.checker.thresholds.bound(scalar),
-                    per_length,
-                );
-                least = margin.larger(sign.splat(-1.0)).smaller(least);
-                keep_least(&mut least_kept, scalar, scalars[scalar]);
-            }
+        let mut kept = PoseScalars::splat(f64::INFINITY);
+        for scalar in self.kept.iter() {
+            kept[scalar] = least_lane(least_kept[scalar]);
         }
-        examined(least, &least_kept, limited)
+        Examined {
+            margin: least_lane(least),
+            kept,
+        }
     }
 }
 
@@ -99,19 +65,6 @@ impl<L: Leg> WithSimd for WorstSlowMargin<'_, L> {
 fn keep_least<V: Real>(least: &mut PoseScalars<V>, scalar: PoseScalar, value: V) {
     let reversed = value.splat(scalar.entry().quantity.better.sign());
     least[scalar] = (value * reversed).smaller(least[scalar]);
-}
-
-/// Returns what the lanes of a loop over positions have shown.
-#[inline(always)]
-fn examined<S: Simd>(margin: Lanes<S>, least: &PoseScalars<Lanes<S>>, set: ScalarSet) -> Examined {
-    let mut kept = PoseScalars::splat(f64::INFINITY);
-    for scalar in set.iter() {
-        kept[scalar] = least_lane(least[scalar]);
-    }
-    Examined {
-        margin: least_lane(margin),
-        kept,
-    }
 }
 
 /// Returns the least number of all lanes.
@@ -128,12 +81,32 @@ impl<L: Leg> PoseChecker<L> {
     pub(super) fn worst_margin(
         &self,
         oriented: OrientationLanes<'_>,
+        columns: (&[f64], &[f64]),
+        base_radius: f64,
+        kept: ScalarSet,
+    ) -> Examined {
+        self.worst_margin_of::<false>(oriented, columns, base_radius, kept)
+    }
+
+    /// Returns the same of the limits that take long alone.
+    pub(super) fn worst_slow_margin(
+        &self,
+        oriented: OrientationLanes<'_>,
+        columns: (&[f64], &[f64]),
+        base_radius: f64,
+    ) -> Examined {
+        self.worst_margin_of::<true>(oriented, columns, base_radius, self.slow_limits())
+    }
+
+    fn worst_margin_of<const SLOW: bool>(
+        &self,
+        oriented: OrientationLanes<'_>,
         (xs, ys): (&[f64], &[f64]),
         base_radius: f64,
         kept: ScalarSet,
     ) -> Examined {
         assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
-        self.instructions.run(WorstMargin {
+        self.instructions.run(WorstMargin::<L, SLOW> {
             checker: self,
             oriented,
             xs,
@@ -143,29 +116,34 @@ impl<L: Leg> PoseChecker<L> {
         })
     }
 
-    /// Returns what many positions in one orientation show of the limits that take long, as [`PoseChecker::worst_margin`].
-    pub(super) fn worst_slow_margin(
+    /// Returns the worst margin of some limits that take long at several poses at once, no less than −1; it means nothing where a leg does
+    /// not reach the pose. Margins of lengths are divided by `base_radius`, and the worst values so far are kept.
+    #[inline(always)]
+    fn slow_margin_lanes<V: Real>(
         &self,
-        oriented: OrientationLanes<'_>,
-        (xs, ys): (&[f64], &[f64]),
+        position: Planar<V>,
+        arms: &[Planar<V>; LEGS],
         base_radius: f64,
-    ) -> Examined {
-        assert!(xs.len() == ys.len() && xs.len().is_multiple_of(MAX_LANES));
-        let mut found = self.instructions.run(WorstSlowMargin {
-            checker: self,
-            oriented,
-            xs,
-            ys,
-            base_radius,
-            limited: self.slow_limits(),
-        });
-        // A clearance is examined no further than to the distance that has the worst margin, by which that margin is rounded: here as there.
-        if let Some(threshold) = self.thresholds.get(PoseScalar::Clearance) {
-            let distance = found.margin * base_radius + threshold;
-            let rounded = (distance - threshold) * (1.0 / base_radius);
-            found.margin = found.margin.min(rounded.max(-1.0));
+        (slow, least_kept): (ScalarSet, &mut PoseScalars<V>),
+    ) -> V {
+        let like = position.x;
+        let none = like.splat(-1.0);
+        let per_length = like.splat(1.0 / base_radius);
+        let mut scalars = PoseScalars::splat(like);
+        self.fill_on_demand(slow, position, arms, &mut scalars);
+        let mut worst = like.splat(f64::INFINITY);
+        for scalar in slow.iter() {
+            let threshold = self.thresholds.bound(scalar);
+            let margin = limit_margin(scalar, scalars[scalar], threshold, per_length);
+            worst = worst.smaller(margin.larger(none));
+            keep_least(least_kept, scalar, scalars[scalar]);
         }
-        found
+        // A clearance is examined no further than to the distance that has the worst margin, which rounds that margin: here as there.
+        if let Some(threshold) = self.thresholds.get(PoseScalar::Clearance) {
+            let distance = worst * like.splat(base_radius) + like.splat(threshold);
+            worst = worst.smaller(((distance - like.splat(threshold)) * per_length).larger(none));
+        }
+        worst
     }
 
     /// Returns the worst margin of the limits at several poses at once, no less than −1, and less than −1 where a leg does not reach

@@ -106,7 +106,7 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         let (orientations, centres) = orientations(&checker, spec.centre, sampling.orientation_grid());
         let mut margins = Self {
             kept: checker.slow_limits(),
-            quick: checker.without_limits(checker.slow_limits()),
+            quick: checker.without_slow_limits(),
             checker,
             sampling,
             step_base,

@@ -18,7 +18,7 @@ mod travel;
 use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
 use motion::MotionForms;
-use plain::PlainLimits;
+use plain::checker_of_slow_limits;
 use reach::ReachForms;
 use strength::{LoadForms, StrengthForms};
 pub(super) use travel::{Travel, TravelForms};
@@ -28,7 +28,7 @@ use crate::enclosure::{Interval, PoseEnclosure, TaylorModel, VARIABLES, cross, d
 use crate::evaluation::{Model, PoseScalar, Thresholds};
 use crate::kinematics::CharacteristicLength;
 use crate::mechanism::{AnyLeg, Design, JointKind, LegEnclosure, LegFrameEnclosure};
-use crate::pose::ScalarSet;
+use crate::pose::{PoseChecker, ScalarSet};
 use crate::spatial::{LEGS, Pose};
 
 /// Returns a limited scalar that has no form: one of the region as a whole, or the determinant, of which the sign alone counts.
@@ -160,8 +160,8 @@ pub(super) struct Forms<'a> {
     loads: LoadForms,
     /// What the limits of a motion need, if there are any.
     motion: Option<MotionForms>,
-    /// The limits that take long, if there are any.
-    plain: Option<PlainLimits>,
+    /// The design in plain numbers, if there are limits that take long.
+    slow: Option<PoseChecker<AnyLeg>>,
 }
 
 impl<'a> Forms<'a> {
@@ -178,7 +178,7 @@ impl<'a> Forms<'a> {
             separations: Separations::new(model, design),
             reach: ReachForms::new(model, design),
             loads: LoadForms::new(design),
-            plain: PlainLimits::new(model, design),
+            slow: checker_of_slow_limits(model, design),
             strength,
             motion,
             frames,
@@ -201,9 +201,10 @@ impl<'a> Forms<'a> {
         self.enclose_with(pose, proved, Separations::enclose)
     }
 
-    /// Encloses the constraints over a box without width, but for those that are proved there: each value is negative only where
-    /// the constraint is violated.
+    /// Encloses the constraints over a box without width, but for those that are proved there, and for limits that take long and that plain
+    /// numbers keep: each value is negative only where the constraint is violated.
     pub fn enclose_pose(&self, pose: &PoseEnclosure, proved: ProvedForms) -> Enclosures {
+        let proved = self.with_those_kept_at(proved, pose);
         self.enclose_with(pose, proved, Separations::enclose_pose)
     }
 
