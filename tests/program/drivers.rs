@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use kinefront_testkit::python;
 
+use super::identities::keeps_its_identities;
 use super::support::{design_of, folder, json, kinefront, optimize, says, script};
 
 /// The lightest 3-PRR for a disc of 1.2 m, and its home orientation, as an independent solver found them.
@@ -266,7 +267,7 @@ fn prices_along_a_front_are_those_of_its_designs() {
         assert!(at.is_sorted(), "{at:?}");
         for design in designs {
             let id = design["id"].to_string();
-            keeps_its_identities(design, front["architecture"].as_str().expect("a name"));
+            keeps_its_identities(&design["drivers"], front["architecture"].as_str().expect("a name"));
             let row = rows.iter().find(|row| row[place("id")] == id).expect("the row");
             assert_eq!(row[place("architecture")], front["architecture"]);
             for price in design["drivers"]["prices"].as_array().expect("prices") {
@@ -345,50 +346,6 @@ fn is_recorded(table: &str, folder: &Path, along: &Value) {
     }
     // A file that exists is never replaced.
     record().assert().code(2).stderr(contains("exists"));
-}
-
-/// Scaling all forces, or all lengths, changes nothing but the unit: the prices of what has them add up.
-fn keeps_its_identities(design: &serde_json::Value, architecture: &str) {
-    let prices = design["drivers"]["prices"].as_array().expect("prices");
-    let price = |name: &str| {
-        let found = prices.iter().find(|price| price["parameter"] == name);
-        found.map_or(0.0, |price| price["price"].as_f64().expect("a number"))
-    };
-    let bounds = prices.iter().filter(|price| {
-        price["parameter"]
-            .as_str()
-            .is_some_and(|name| name.starts_with("bounds."))
-    });
-    let bounds: f64 = bounds.map(|price| price["price"].as_f64().expect("a number")).sum();
-    let stiffness = price("k_xy_min") + price("k_z_min");
-    let forces = price("E") + price("G") + price("K_act") + stiffness + price("k_phi_z_min");
-    assert!(forces.abs() < 1e-7, "{architecture}: {forces}");
-    // The stiffness of an actuator that slides is a force over a length, that of one that turns a force times a length.
-    let of_actuators = match architecture {
-        "3-PRR" | "3-RPR" => 1.0,
-        "3-RRR" => 3.0,
-        other => panic!("{other}"),
-    };
-    let lengths =
-        of_actuators * price("K_act") + stiffness + 3.0 * price("k_phi_z_min") + price("workspace_radius") + bounds;
-    assert!((lengths - 3.0).abs() < 1e-6, "{architecture}: {lengths}");
-    assert!((price("density") - 1.0).abs() < 1e-9);
-}
-
-/// The critical poses of these designs lie in valleys that are parallel to no coordinate, or the legs are nearly stretched: prices need
-/// exact places there, and exact derivatives.
-#[test]
-fn prices_of_designs_with_flat_valleys_keep_the_identities() {
-    for dimensions in [
-        "R=1.050713370059659 r=0.1 Lb=0.5 rj=0.017079438655045076 rp=0.010682370272295945",
-        "R=1.6652717987588521 r=0.1 Lb=1.4286022016209872 rj=0.06445319678248854 rp=0.026919048037598467",
-        "R=1.8578058254040524 r=0.1 Lb=1.6041013829777744 rj=0.07329675865503613 rp=0.029401005682441285",
-    ] {
-        let drivers = json(["prices", "--design", &format!("3-RRR {dimensions}"), "--json"]);
-        let residual = drivers["residual"].as_f64().expect("a number");
-        assert!(residual < 1e-6, "{dimensions}: {residual}");
-        keeps_its_identities(&serde_json::json!({ "drivers": drivers }), "3-RRR");
-    }
 }
 
 /// Returns the evaluation of a design on the fine grid.

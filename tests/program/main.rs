@@ -12,6 +12,7 @@ mod faults;
 mod fronts;
 mod fuzzed;
 mod handed_over;
+mod identities;
 mod injected;
 mod merging;
 mod motion;

@@ -169,6 +169,11 @@ impl LocalProblem {
     /// is off by as much. All coordinates change together, because a valley may be parallel to none of them.
     pub(crate) fn sharpened(&self, prepared: &Prepared, from: &Critical) -> Critical {
         let requirement = from.requirement;
+        let at = |place: Place| Critical {
+            requirement,
+            place,
+            slack: self.value(prepared, requirement, &place),
+        };
         let mut place = from.place;
         for _ in 0..VERTICES {
             let Some(next) = self.vertex(prepared, requirement, place) else {
@@ -176,15 +181,12 @@ impl LocalProblem {
             };
             place = next;
         }
-        let slack = self.value(prepared, requirement, &place);
-        // Rounding aside, the vertex is no higher.
-        match slack <= from.slack + 1e-9 {
-            true => Critical {
-                requirement,
-                place,
-                slack,
-            },
-            false => *from,
+        // The known slack may be that of another design. Rounding aside, the vertex is no higher.
+        let (known, found) = (at(from.place), at(place));
+        if found.slack <= known.slack + 1e-9 {
+            found
+        } else {
+            known
         }
     }
 
@@ -199,9 +201,13 @@ impl LocalProblem {
         let mut free: Vec<usize> = Vec::new();
         let (mut slopes, mut bends): (Vec<f64>, Vec<f64>) = Default::default();
         for freedom in 0..=freedoms {
-            let around = [-1.0, 1.0].map(|way| shifted(place, freedom, way).and_then(at));
-            let [Some(below), Some(above)] = around else { continue };
-            let (slope, bend) = (0.5 * (above - below), below - 2.0 * here + above);
+            let around = |way: f64| Some([at(shifted(place, freedom, -way)?)?, at(shifted(place, freedom, way)?)?]);
+            let (Some([below, above]), Some(nearer)) = (around(1.0), around(0.5)) else {
+                continue;
+            };
+            // A third derivative would move the vertex: the slope is that of the cubic through four values.
+            let slope = (8.0 * (nearer[1] - nearer[0]) - (above - below)) / 6.0;
+            let bend = below - 2.0 * here + above;
             if bend > 0.0 && slope.abs() < NEARBY * bend {
                 free.push(freedom);
                 slopes.push(slope);
