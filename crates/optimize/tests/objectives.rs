@@ -87,7 +87,7 @@ const DTLZ2_VOLUME: f64 = 1.331 - std::f64::consts::PI / 6.0;
 fn three_objectives_approach_the_sphere() {
     let variables = || Dtlz2.variables();
     let algorithms: [(Box<dyn Algorithm>, f64); 3] = [
-        (Box::new(FrontDe::new(variables(), FrontDeSettings::default(), 3)), 0.9),
+        (Box::new(FrontDe::new(variables(), FrontDeSettings::default(), 3)), 0.93),
         (Box::new(Nsga2::new(variables(), Nsga2Settings::default(), 3)), 0.93),
         (Box::new(Moga2::new(variables(), Moga2Settings::default(), 3)), 0.3),
     ];

@@ -21,7 +21,9 @@
 //!   quadratics to the nearest candidates, and the best of many trial points is asked for. Some candidates extend an end
 //!   of the front instead, and a few are random. Problems whose variables are not determined are searched without a model.
 //! - **Crossover**: where differences do not help (many local fronts, separable variables), simulated binary crossover
-//!   and polynomial mutation do. The probability of each of the two operators follows its recent success.
+//!   and polynomial mutation do. The probability of each of the two operators follows its recent success: with two objectives,
+//!   how often its candidates reach the common front; with three, where almost every candidate does, how often they dominate one of its
+//!   members.
 
 mod gaps;
 mod learner;
@@ -104,6 +106,12 @@ const MEMORY: f64 = 0.02;
 /// Factor of the initial size of a population with three objectives.
 const SURFACE: usize = 3;
 
+/// Power of the success by which an operator is drawn with three objectives.
+const SHARPNESS: f64 = 8.0;
+
+/// Number of times that a candidate is made again with three objectives because it is a member already.
+const PATIENCE: usize = 20;
+
 /// Probability that two parents are crossed before mutation.
 const CROSSED: f64 = 0.9;
 
@@ -136,15 +144,15 @@ struct Origin {
     target: Option<Target>,
 }
 
-/// Exponential moving average of the fraction of candidates that reached the common front.
+/// Exponential moving average of the fraction of candidates that reached the common front, or dominated a member of it.
 #[derive(Debug, Clone, Copy)]
 struct Success(f64);
 
 impl Success {
     const UNKNOWN: Success = Success(0.5);
 
-    fn learn(&mut self, reached: bool) {
-        self.0 += MEMORY * (f64::from(u8::from(reached)) - self.0);
+    fn learn(&mut self, succeeded: bool) {
+        self.0 += MEMORY * (f64::from(u8::from(succeeded)) - self.0);
     }
 }
 
@@ -232,7 +240,7 @@ impl FrontDe {
             (candidate, None)
         } else {
             let way = self.draw(&self.operator_weights(niche), MIN_PROBABILITY);
-            (self.varied(niche, way), Some(way))
+            (self.new_on_surface(niche, way), Some(way))
         };
         let target = candidate.target;
         self.pending.push(Origin { niche, way, target });
@@ -261,6 +269,22 @@ impl FrontDe {
         })
     }
 
+    /// Returns a candidate that one of the two operators makes; with three objectives, one that is no member already, if there is one. A copy
+    /// would be a neighbour without a distance.
+    fn new_on_surface(&mut self, niche: usize, way: usize) -> Candidate {
+        let mut made = self.varied(niche, way);
+        for _ in 0..PATIENCE {
+            let Niche {
+                population, nearest, ..
+            } = &self.niches[niche];
+            if nearest.is_empty() || population.iter().all(|member| member.candidate.x != made.x) {
+                break;
+            }
+            made = self.varied(niche, way);
+        }
+        made
+    }
+
     /// Returns a candidate that one of the two operators makes.
     fn varied(&mut self, niche: usize, way: usize) -> Candidate {
         let size = self.niches[niche].population.len();
@@ -281,13 +305,13 @@ impl FrontDe {
         }
     }
 
-    /// Returns the weights with which the operators are drawn. On a surface both succeed often, so that their success is
-    /// sharpened.
+    /// Returns the weights with which the operators are drawn. On a surface the better operator succeeds only somewhat more often, so that
+    /// their success is sharpened.
     fn operator_weights(&self, niche: usize) -> [Success; 2] {
         if self.niches[niche].nearest.is_empty() {
             self.ways
         } else {
-            self.ways.map(|Success(share)| Success(share * share * share))
+            self.ways.map(|Success(share)| Success(libm::pow(share, SHARPNESS)))
         }
     }
 
@@ -395,22 +419,18 @@ impl Algorithm for FrontDe {
 
     fn tell(&mut self, evaluated: Vec<Evaluated>) {
         let mut offspring: Vec<Vec<Evaluated>> = vec![Vec::new(); self.niches.len()];
-        let mut on_surface: Vec<(usize, usize, Vec<f64>)> = Vec::new();
         for (candidate, &Origin { niche, way, target }) in evaluated.into_iter().zip(&self.pending) {
             if let Some(learner) = &mut self.niches[niche].learner {
                 learner.learn(self.evaluated, &candidate, target);
             }
+            let known = self.archive.len();
             let reached = self.archive.insert(self.evaluated, &candidate.x, &candidate.outcome);
             self.evaluated += 1;
             self.niches[niche].evaluated += 1;
             self.niches[niche].success.learn(reached);
-            match way {
-                // Almost every candidate is non-dominated on a surface: what counts is whether it stays.
-                Some(way) if candidate.outcome.objectives.len() > 2 => {
-                    on_surface.push((niche, way, candidate.x.clone()))
-                }
-                Some(way) => self.ways[way].learn(reached),
-                None => {}
+            if let Some(way) = way {
+                let is_surface = candidate.outcome.objectives.len() > 2;
+                self.ways[way].learn(reached && (!is_surface || self.archive.len() <= known));
             }
             offspring[niche].push(candidate);
         }
@@ -418,24 +438,13 @@ impl Algorithm for FrontDe {
         for (niche, offspring) in self.niches.iter_mut().zip(offspring) {
             if !offspring.is_empty() {
                 let is_surface = offspring[0].outcome.objectives.len() > 2;
-                let start = if is_surface {
-                    SURFACE * settings.population
-                } else {
-                    settings.population
-                };
-                let size = start.max(4) + niche.evaluated / settings.growth.max(1);
+                let scale = if is_surface { SURFACE } else { 1 };
+                let size = (scale * settings.population).max(4) + niche.evaluated / (scale * settings.growth.max(1));
                 let members = niche.population.drain(..).map(|member| member.candidate);
                 let pool = members.chain(offspring).collect();
                 niche.population = along_front(best(pool, size.min(settings.most.max(4))));
                 niche.nearest = nearest(&niche.population, 2 * settings.neighbours.max(1) + 1);
             }
-        }
-        for (niche, way, x) in on_surface {
-            let stays = self.niches[niche]
-                .population
-                .iter()
-                .any(|member| member.candidate.x == x);
-            self.ways[way].learn(stays);
         }
     }
 }
