@@ -1,7 +1,5 @@
 //! The gaps between neighbouring members of a front, and which of them a candidate is to close.
 
-use std::collections::BTreeMap;
-
 use crate::random::Random;
 use crate::{Archive, ArchiveMember};
 
@@ -24,6 +22,8 @@ pub struct Gaps {
 struct Gap {
     /// Evaluations of the two members.
     ends: [usize; 2],
+    /// First objective of the first member, in whose ascending order the gaps are.
+    first: f64,
     /// Area of the rectangle between the ends, and the same with the logarithm of the sized objective.
     areas: [f64; 2],
     /// Number of candidates so far that were to close it.
@@ -41,24 +41,30 @@ impl Gaps {
                 .get(at)
                 .is_some_and(|other| other.objectives == member.objectives)
         };
-        let ends: Vec<(&ArchiveMember, f64, bool)> = front
-            .iter()
-            .map(|member| (member, logarithm(member.objectives[1 - leveled]), is_common(member)))
-            .collect();
-        let tried = self.gaps.iter().filter(|gap| gap.tried > 0);
-        let before: BTreeMap<[usize; 2], u32> = tried.map(|gap| (gap.ends, gap.tried)).collect();
+        // The gaps so far are in the same order as the members, so that one pass finds those that are left.
+        let mut before = std::mem::take(&mut self.gaps).into_iter().peekable();
+        let mut tried = |ends: [usize; 2], first: f64| {
+            while before.next_if(|gap| gap.first < first).is_some() {}
+            let known = before.peek().filter(|gap| gap.ends == ends);
+            known.map_or(0, |gap| gap.tried)
+        };
         let gap = |pair: &[(&ArchiveMember, f64, bool)]| {
             let [(a, log_a, common_a), (b, log_b, common_b)] = [pair[0], pair[1]];
             let weight = if common_a || common_b { 1.0 } else { DOMINATED };
             let height = weight * (b.objectives[leveled] - a.objectives[leveled]);
             let width = b.objectives[1 - leveled] - a.objectives[1 - leveled];
-            let ends = [a.id, b.id];
+            let (ends, first) = ([a.id, b.id], a.objectives[0]);
             Gap {
                 ends,
+                first,
                 areas: [width * height, (log_b - log_a) * height].map(f64::abs),
-                tried: before.get(&ends).copied().unwrap_or(0),
+                tried: tried(ends, first),
             }
         };
+        let ends: Vec<(&ArchiveMember, f64, bool)> = front
+            .iter()
+            .map(|member| (member, logarithm(member.objectives[1 - leveled]), is_common(member)))
+            .collect();
         self.gaps = ends.windows(2).map(gap).collect();
     }
 
