@@ -126,22 +126,9 @@ impl<'a> Exchange<'a> {
         let mut span = TRUST;
         let (mut least_missed, mut improved) = (f64::INFINITY, 0);
         for round in 0..ROUNDS {
-            self.adopt(&survey);
-            // Near the optimum, a heavy weight would drown the decrease of what is minimised in rounding.
-            self.weight = (2.0 * self.pressure).clamp(LIGHTEST, HEAVIEST);
             let known = missed(&survey);
             let (before, hessian, pressure) = (self.unknowns.clone(), self.hessian.clone(), self.pressure);
-            self.reach = self
-                .unknowns
-                .iter()
-                .zip(&self.bounds)
-                .map(|(value, [lower, upper])| [lower.max(value - span), upper.min(value + span)])
-                .collect();
-            self.descend(TRUST.min(span));
-            let moved = before
-                .iter()
-                .zip(&self.unknowns)
-                .fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            let moved = self.descend_with(&survey, span);
             let found = self.survey(Density::Coarse)?;
             if missed(&found) > (2.0 * known).max(ASTRAY) {
                 // The design went past a singularity that was not known: nothing there leads back.
@@ -179,7 +166,12 @@ impl<'a> Exchange<'a> {
                 break;
             }
         }
-        let problem = self.problem;
+        self.polished(survey)
+    }
+
+    /// Returns the result of a search that has ended, with its last steps where no slack is asked for.
+    fn polished(mut self, mut survey: Vec<Critical>) -> Option<Polished> {
+        let (problem, slack) = (self.problem, self.problem.question().slack);
         if slack == 0.0 && missed(&survey) <= HELD {
             (self.unknowns, survey) = problem.finished(self.unknowns, survey, HELD);
         }
@@ -227,6 +219,19 @@ impl<'a> Exchange<'a> {
             }
         }
         self.critical = kept;
+    }
+
+    /// Adds the critical poses of a survey, and takes steps that change no unknown by more than `span` in all. Returns the largest change.
+    fn descend_with(&mut self, survey: &[Critical], span: f64) -> f64 {
+        self.adopt(survey);
+        // Near the optimum, a heavy weight would drown the decrease of what is minimised in rounding.
+        self.weight = (2.0 * self.pressure).clamp(LIGHTEST, HEAVIEST);
+        let within = |(value, [lower, upper]): (&f64, &[f64; 2])| [lower.max(value - span), upper.min(value + span)];
+        self.reach = self.unknowns.iter().zip(&self.bounds).map(within).collect();
+        let before = self.unknowns.clone();
+        self.descend(TRUST.min(span));
+        let changes = before.iter().zip(&self.unknowns);
+        changes.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()))
     }
 
     /// Takes steps until none improves the design that keeps the critical poses.

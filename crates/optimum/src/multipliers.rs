@@ -53,30 +53,9 @@ impl Multipliers {
             .copied()
             .collect();
         let (gradient, rows) = problem.derivatives(unknowns, &near);
-        let mut kept: Vec<usize> = Vec::new();
-        for place in 0..near.len() {
-            let is_known = |other: &usize| {
-                let (a, b) = (rows.row(*other), rows.row(place));
-                near[*other].requirement.is_alike(near[place].requirement)
-                    && near[*other].is_active() == near[place].is_active()
-                    && (a - b).amax() <= ALIKE * a.amax().max(b.amax())
-            };
-            if !kept.iter().any(is_known) {
-                kept.push(place);
-            }
-        }
+        let kept = distinct(&near, &rows);
         let count = unknowns.len();
-        let mut bounds = Vec::new();
-        for (variable, [lower, upper]) in problem.bounds().into_iter().enumerate() {
-            for (end, distance) in [
-                (End::Lower, unknowns[variable] - lower),
-                (End::Upper, upper - unknowns[variable]),
-            ] {
-                if distance <= NEARLY_ACTIVE {
-                    bounds.push((variable, end, distance));
-                }
-            }
-        }
+        let bounds = near_bounds(problem, unknowns);
         let mut columns = DMatrix::zeros(count, kept.len() + bounds.len());
         for (column, place) in kept.iter().enumerate() {
             columns.set_column(column, &rows.row(*place).transpose());
@@ -150,6 +129,32 @@ impl Multipliers {
         };
         Some([end(1.0)?, end(-1.0)?])
     }
+}
+
+/// Returns the places of critical poses, leaving out those whose gradient is that of one before.
+fn distinct(near: &[Critical], rows: &DMatrix<f64>) -> Vec<usize> {
+    let mut kept: Vec<usize> = Vec::new();
+    for place in 0..near.len() {
+        let is_known = |other: &usize| {
+            let (a, b) = (rows.row(*other), rows.row(place));
+            near[*other].requirement.is_alike(near[place].requirement)
+                && near[*other].is_active() == near[place].is_active()
+                && (a - b).amax() <= ALIKE * a.amax().max(b.amax())
+        };
+        if !kept.iter().any(is_known) {
+            kept.push(place);
+        }
+    }
+    kept
+}
+
+/// Returns the bounds that are nearly reached: the place of the unknown, the end, and its distance.
+fn near_bounds(problem: &LocalProblem, unknowns: &[f64]) -> Vec<(usize, End, f64)> {
+    let ends = problem.bounds().into_iter().zip(unknowns).enumerate();
+    let ends = ends.flat_map(|(place, ([lower, upper], value))| {
+        [(place, End::Lower, value - lower), (place, End::Upper, upper - value)]
+    });
+    ends.filter(|(.., distance)| *distance <= NEARLY_ACTIVE).collect()
 }
 
 fn dot<'a>(multipliers: impl Iterator<Item = &'a f64>, effects: &[f64]) -> f64 {
