@@ -26,7 +26,7 @@ fn quantities(stated: &BTreeMap<String, f64>) -> PyResult<Vec<(Quantity, f64)>> 
 }
 
 fn quantity(key: &str) -> PyResult<Quantity> {
-    Quantity::find(key).ok_or_else(|| InputError::new_err(format!("`{key}` is the key of no quantity")))
+    Wish::quantity(key).map_err(|error| InputError::new_err(error.to_string()))
 }
 
 /// Returns what drives the first objective of a design.

@@ -10,6 +10,7 @@ use kinefront_model::certify::{CertifyError, CertifyOptions};
 use kinefront_model::mechanism::{Design, TextError};
 use kinefront_study::{PreparedStudy, Study};
 
+use super::numbers::whole_number;
 use super::stream::{InputLine, answer, next_line};
 use super::subject::{DESIGN_OR_STREAM, SubjectArguments, exactly_one_of};
 use super::{Ending, Failure, load_study, tables, to_json};
@@ -39,7 +40,7 @@ pub struct CertifyArguments {
     #[arg(long, value_name = "T", default_value_t = CertifyOptions::TOLERANCE, allow_negative_numbers = true)]
     tolerance: f64,
     /// Largest number of boxes.
-    #[arg(long, value_name = "N", default_value_t = CertifyOptions::MAX_BOXES as u64, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "N", default_value_t = CertifyOptions::MAX_BOXES as u64, allow_negative_numbers = true, value_parser = whole_number::<u64>(1..=1_000_000_000))]
     max_boxes: u64,
     /// Also bound the workspace radius over all home orientations.
     #[arg(long)]

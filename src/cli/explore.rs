@@ -7,6 +7,7 @@ use kinefront_explorer::{InitialContent, Script, run as open_window};
 use kinefront_study::BUILTIN;
 use miette::miette;
 
+use super::numbers::whole_number;
 use super::signals::at_end_signals;
 use super::{Ending, Failure, load_study};
 
@@ -18,10 +19,10 @@ pub struct ExploreArguments {
     #[arg(long)]
     no_run: bool,
     /// Random seed; overrides that of the study.
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole_number::<u64>(0..=i64::MAX as u64))]
     seed: Option<u64>,
     /// Number of evaluations; overrides that of the study.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole_number::<u64>(1..=100_000_000))]
     evaluations: Option<u64>,
     /// Script that operates the window, for screenshots and measurements.
     #[arg(long, value_name = "FILE")]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use kinefront_study::{Merge, MergeError, ReplayError, RunControl, SearchError};
 
+use super::numbers::whole_number;
 use super::runs::{RunArguments, perform, write_failure};
 use super::signals::interrupt_on_signals;
 use super::{Ending, Failure, say};
@@ -18,7 +19,7 @@ pub struct MergeArguments {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Keep the non-dominated designs, and every N-th of the others.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = whole_number::<u64>(1..=100_000_000))]
     keep_every: u64,
     #[command(flatten)]
     run: RunArguments,

@@ -9,6 +9,7 @@ mod explore;
 mod export;
 mod manual;
 mod merge;
+mod numbers;
 mod optimize;
 mod pose;
 mod prices;

@@ -13,6 +13,7 @@ use kinefront_study::{
 };
 use miette::miette;
 
+use super::numbers::whole_number;
 use super::runs::{RunArguments, perform, write_failure};
 use super::signals::interrupt_on_signals;
 use super::{Ending, Failure, load_study, say};
@@ -31,10 +32,10 @@ pub struct OptimizeArguments {
     #[arg(long, value_parser = algorithms())]
     algorithm: Option<AlgorithmName>,
     /// Number of evaluations; overrides that of the study.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole_number::<u64>(1..=100_000_000))]
     evaluations: Option<u64>,
     /// Random seed; overrides that of the study.
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole_number::<u64>(0..=i64::MAX as u64))]
     seed: Option<u64>,
     /// Number of designs that are reported, or `all` for the whole verified front; overrides that of the study.
     #[arg(long, value_name = "N|all", value_parser = front_size)]

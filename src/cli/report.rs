@@ -7,6 +7,7 @@ use indicatif::ProgressBar;
 use kinefront_report::{Options, Report, ReportError, SideBySide, Source, free};
 use miette::Report as Words;
 
+use super::numbers::whole_number;
 use super::progress::keep_ticking;
 use super::{Ending, Failure, load_study, say};
 
@@ -37,10 +38,10 @@ pub struct ReportArguments {
     replace: bool,
     /// Number of evaluations of each search for the sensitivity to assumptions of a study with two objectives; 0 omits the
     /// sensitivity [default: 2000 with --paper, otherwise 0].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole_number::<u32>(0..=10_000_000))]
     sensitivity: Option<u32>,
     /// Width in pixels of the pictures of designs.
-    #[arg(long, value_name = "PIXELS", default_value_t = PICTURE_WIDTH, value_parser = clap::value_parser!(u32).range(160..=8000))]
+    #[arg(long, value_name = "PIXELS", default_value_t = PICTURE_WIDTH, allow_negative_numbers = true, value_parser = whole_number::<u32>(160..=8000))]
     picture_width: u32,
     /// Scale of the figures' PNG files in pixels per unit; a figure is 640 units wide.
     #[arg(long, value_name = "SCALE", default_value_t = SCALE, value_parser = scale)]

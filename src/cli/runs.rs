@@ -11,6 +11,7 @@ use kinefront_study::{
 };
 use miette::miette;
 
+use super::numbers::whole_number;
 use super::progress::Progress;
 use super::why::hindrances;
 use super::{Ending, Failure, say, tables};
@@ -21,10 +22,10 @@ const CHANNEL: usize = 64;
 #[derive(Debug, clap::Args)]
 pub struct RunArguments {
     /// Number of worker threads; the result does not depend on it [default: all cores].
-    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = whole_number::<u64>(1..=1024))]
     threads: Option<u64>,
     /// Record every N-th generation; beyond 100 000 designs, every 10 N-th, and so on [default: 1].
-    #[arg(long, value_name = "N", conflicts_with = "no_recording", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", conflicts_with = "no_recording", allow_negative_numbers = true, value_parser = whole_number::<u64>(1..=100_000_000))]
     record_every: Option<u64>,
     /// Write no recording.
     #[arg(long)]

@@ -2,9 +2,7 @@
 
 use std::io::Write;
 
-use kinefront_model::evaluation::Quantity;
 use kinefront_study::{Condition, DesignProblem, Wish};
-use miette::miette;
 
 use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
 use super::{Ending, Failure, tables, to_json};
@@ -48,13 +46,10 @@ fn read(arguments: &WishArguments) -> Result<Wish, Failure> {
         .set
         .iter()
         .map(|text| text.parse::<Condition>().map_err(Failure::input));
-    let keep = arguments.keep.iter().map(|key| {
-        Quantity::find(key).ok_or_else(|| {
-            Failure::Input(miette!(
-                "`{key}` is not a quantity; quantities are the keys of `objectives` and `constraints`, such as footprint_m"
-            ))
-        })
-    });
+    let keep = arguments
+        .keep
+        .iter()
+        .map(|key| Wish::quantity(key).map_err(Failure::input));
     Ok(Wish {
         conditions: conditions.collect::<Result<_, _>>()?,
         keep: keep.collect::<Result<_, _>>()?,

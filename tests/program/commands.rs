@@ -229,7 +229,7 @@ fn people_get_tables() {
 /// Invalid input gives exit code 2 and a message that says what is wrong and what would be right.
 #[test]
 fn wrong_input_is_refused_in_words() {
-    let cases: [(&[&str], &str); 13] = [
+    let cases: [(&[&str], &str); 16] = [
         (
             &["evaluate", "--design", "3-PPP R=1"],
             "expected one of 3-PRR, 3-RPR, 3-RRR",
@@ -256,8 +256,14 @@ fn wrong_input_is_refused_in_words() {
             &["pose", "--design", DESIGN, "--pose", "x=0 y=inf phi_deg=0"],
             "must be finite",
         ),
-        (&["optimize", "--threads", "0"], "1..=1024"),
-        (&["optimize", "--evaluations", "0"], "1..=100000000"),
+        (&["optimize", "--threads", "0"], "a whole number from 1 to 1024"),
+        (&["optimize", "--evaluations", "0"], "from 1 to 100000000"),
+        (&["optimize", "--evaluations", "-5"], "from 1 to 100000000"),
+        (&["optimize", "--evaluations", "1e5"], "did you mean `100000`?"),
+        (
+            &["report", "--picture-width", "90000"],
+            "a whole number from 160 to 8000",
+        ),
         (&["optimize", "--architectures", "3-PRR,4-RRR"], "unknown architecture"),
         (
             &["optimize", "--architectures", "3-PRR,3-PRR"],

@@ -206,6 +206,10 @@ fn a_front_answers_wishes_and_reasons() {
             "`stiffness` is not a quantity",
         ),
         (
+            vec!["wish", &subject, "--set", "mass_kg <= 9", "--keep", "footprint_mm"],
+            "the footprint is stated in m: `footprint_m`",
+        ),
+        (
             vec!["wish", &subject, "--set", "mass_kg <= -3"],
             "is not a number above 0",
         ),

@@ -10,8 +10,9 @@ use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::Region;
 use kinefront_optimum::{LocalProblem, LocalQuestion, Polished};
 
-use super::grid::{ANSWERS, ROOMS};
+use super::grid::{ANSWERS, ROOM, ROOMS};
 use super::{LocalAnswer, LocalDesign, LocalFault};
+use crate::settings::unknown_quantity;
 use crate::{DesignProblem, FrontMember, FrontProver};
 
 /// Part of a wish up to which the largest one that can be had is determined.
@@ -31,9 +32,7 @@ pub enum ConditionError {
     #[error("`{0}` is not a condition; write a quantity, >= or <=, and a number, as in \"k_xy_n_per_m >= 1.2e6\"")]
     Form(String),
     /// The quantity is unknown.
-    #[error(
-        "`{0}` is not a quantity; quantities are the keys of `objectives` and `constraints`, such as mass_kg, workspace_radius_m, k_xy_n_per_m"
-    )]
+    #[error("`{0}` {told}", told = unknown_quantity(.0))]
     Quantity(String),
     /// The number is none.
     #[error("`{0}` is not a number above 0")]
@@ -57,8 +56,7 @@ impl FromStr for Condition {
             (None, Some((key, number))) => (key, Bound::AtMost as fn(f64) -> Bound, number),
             _ => return Err(ConditionError::Form(text.to_owned())),
         };
-        let key = key.trim();
-        let quantity = Quantity::find(key).ok_or_else(|| ConditionError::Quantity(key.to_owned()))?;
+        let quantity = Wish::quantity(key.trim())?;
         let value = number
             .trim()
             .parse::<f64>()
@@ -92,6 +90,14 @@ pub struct Wish {
 }
 
 impl Wish {
+    /// Returns the quantity with the given key.
+    ///
+    /// # Errors
+    /// [`ConditionError::Quantity`], which names the nearest key, if there is none.
+    pub fn quantity(key: &str) -> Result<Quantity, ConditionError> {
+        Quantity::find(key).ok_or_else(|| ConditionError::Quantity(key.to_owned()))
+    }
+
     /// Returns the quantities that a wish compares, and those of which one may be wished for next.
     fn quantities(&self, model: &Model) -> impl Iterator<Item = Quantity> {
         let named = self.conditions.iter().map(|condition| condition.0.quantity);
@@ -289,6 +295,8 @@ impl Target<'_> {
     /// Returns the question with a part of the wish, from the values that the design has (0) to those that are wished for (1).
     fn question(&self, part: f64) -> LocalQuestion {
         let mut question = self.local.problem.question().clone();
+        // The answer is optimised again for the fine grid, so that it need not be exact.
+        question.slack = ROOM;
         let first = question.objective.quantity;
         for Condition(limit) in self.conditions {
             let (quantity, wished) = (limit.quantity, limit.threshold());
