@@ -5,7 +5,7 @@
 //! generation. A child that equals a member of the population or another child is not evaluated; a further pair of
 //! parents is drawn instead.
 
-use super::population::{PopulationMember, best, ranked, tournament};
+use super::population::{PopulationMember, best, has_member, ranked, tournament};
 use super::random::Random;
 use super::variation::{cross, mutate};
 use super::{Algorithm, Candidate, Evaluated, Variable, doe};
@@ -99,8 +99,7 @@ impl Algorithm for Nsga2 {
         let mut draws = 0;
         while offspring.len() < size {
             for child in self.children() {
-                let is_copy =
-                    offspring.contains(&child) || self.population.iter().any(|member| member.candidate.x == child);
+                let is_copy = offspring.contains(&child) || has_member(&self.population, &child);
                 if offspring.len() < size && (!is_copy || draws > PATIENCE * size) {
                     offspring.push(child);
                 }

@@ -18,6 +18,11 @@ pub struct PopulationMember {
     pub crowding: f64,
 }
 
+/// Returns whether a population has a member with the given variables.
+pub fn has_member(population: &[PopulationMember], x: &[f64]) -> bool {
+    population.iter().any(|member| member.candidate.x == x)
+}
+
 /// Determines the rank and the crowding distance of each candidate.
 pub fn ranked(candidates: Vec<Evaluated>) -> Vec<PopulationMember> {
     let outcomes: Vec<Outcome> = candidates.iter().map(|candidate| candidate.outcome).collect();

@@ -34,7 +34,7 @@ use learner::Learner;
 use niche::{Niche, along_front, nearest};
 
 use super::categories::{combinations, set_categories};
-use super::population::{best, tournament};
+use super::population::{best, has_member, tournament};
 use super::random::Random;
 use super::variation::{cross, mutate};
 use super::{Algorithm, Archive, Candidate, Evaluated, Problem, Target, Variable, doe};
@@ -45,9 +45,10 @@ use super::{Algorithm, Archive, Candidate, Evaluated, Problem, Target, Variable,
 pub struct FrontDeSettings {
     /// Number of candidates of a generation, at least 2. The first sample has as many, but at least four per niche.
     pub generation: usize,
-    /// Initial size of a population, at least 4.
+    /// Initial size of a population, at least 4; three times as many with three objectives.
     pub population: usize,
-    /// Number of evaluations of a niche after which its population grows by one member, at least 1.
+    /// Number of evaluations of a niche after which its population grows by one member, at least 1; three times as many with three
+    /// objectives.
     pub growth: usize,
     /// Largest size of a population, at least 4.
     pub most: usize,
@@ -103,7 +104,7 @@ const SUCCESSFUL: f64 = 0.2;
 /// Weight of one candidate in the exponential moving averages of the success of its niche and of its operator.
 const MEMORY: f64 = 0.02;
 
-/// Factor of the initial size of a population with three objectives.
+/// Factor of the initial size of a population with three objectives, and of the evaluations after which it grows.
 const SURFACE: usize = 3;
 
 /// Power of the success by which an operator is drawn with three objectives.
@@ -240,7 +241,7 @@ impl FrontDe {
             (candidate, None)
         } else {
             let way = self.draw(&self.operator_weights(niche), MIN_PROBABILITY);
-            (self.new_on_surface(niche, way), Some(way))
+            (self.offspring(niche, way), Some(way))
         };
         let target = candidate.target;
         self.pending.push(Origin { niche, way, target });
@@ -269,15 +270,13 @@ impl FrontDe {
         })
     }
 
-    /// Returns a candidate that one of the two operators makes; with three objectives, one that is no member already, if there is one. A copy
+    /// Returns a candidate that one of the two operators makes. With three objectives, it is made again while it is a copy of a member, which
     /// would be a neighbour without a distance.
-    fn new_on_surface(&mut self, niche: usize, way: usize) -> Candidate {
+    fn offspring(&mut self, niche: usize, way: usize) -> Candidate {
         let mut made = self.varied(niche, way);
         for _ in 0..PATIENCE {
-            let Niche {
-                population, nearest, ..
-            } = &self.niches[niche];
-            if nearest.is_empty() || population.iter().all(|member| member.candidate.x != made.x) {
+            let of_niche = &self.niches[niche];
+            if !of_niche.is_on_surface() || !has_member(&of_niche.population, &made.x) {
                 break;
             }
             made = self.varied(niche, way);
@@ -308,10 +307,10 @@ impl FrontDe {
     /// Returns the weights with which the operators are drawn. On a surface the better operator succeeds only somewhat more often, so that
     /// their success is sharpened.
     fn operator_weights(&self, niche: usize) -> [Success; 2] {
-        if self.niches[niche].nearest.is_empty() {
-            self.ways
-        } else {
+        if self.niches[niche].is_on_surface() {
             self.ways.map(|Success(share)| Success(libm::pow(share, SHARPNESS)))
+        } else {
+            self.ways
         }
     }
 
@@ -419,6 +418,9 @@ impl Algorithm for FrontDe {
 
     fn tell(&mut self, evaluated: Vec<Evaluated>) {
         let mut offspring: Vec<Vec<Evaluated>> = vec![Vec::new(); self.niches.len()];
+        let is_surface = evaluated
+            .first()
+            .is_some_and(|first| first.outcome.objectives.len() > 2);
         for (candidate, &Origin { niche, way, target }) in evaluated.into_iter().zip(&self.pending) {
             if let Some(learner) = &mut self.niches[niche].learner {
                 learner.learn(self.evaluated, &candidate, target);
@@ -429,16 +431,14 @@ impl Algorithm for FrontDe {
             self.niches[niche].evaluated += 1;
             self.niches[niche].success.learn(reached);
             if let Some(way) = way {
-                let is_surface = candidate.outcome.objectives.len() > 2;
                 self.ways[way].learn(reached && (!is_surface || self.archive.len() <= known));
             }
             offspring[niche].push(candidate);
         }
         let settings = &self.settings;
+        let scale = if is_surface { SURFACE } else { 1 };
         for (niche, offspring) in self.niches.iter_mut().zip(offspring) {
             if !offspring.is_empty() {
-                let is_surface = offspring[0].outcome.objectives.len() > 2;
-                let scale = if is_surface { SURFACE } else { 1 };
                 let size = (scale * settings.population).max(4) + niche.evaluated / (scale * settings.growth.max(1));
                 let members = niche.population.drain(..).map(|member| member.candidate);
                 let pool = members.chain(offspring).collect();

@@ -34,6 +34,11 @@ impl Niche {
         }
     }
 
+    /// Whether there are three objectives, as far as the population shows.
+    pub fn is_on_surface(&self) -> bool {
+        !self.nearest.is_empty()
+    }
+
     /// Whether the niche has learned enough to propose candidates.
     pub fn can_propose(&self) -> bool {
         self.learner.as_ref().is_some_and(Learner::can_propose)

@@ -147,8 +147,8 @@ const SECTIONS: [&[Setting]; 33] = [
     }),
     settings!("optimizer.front_de" {
         generation: Check::Count(2, 65_536), "Number of candidates of a generation.";
-        population: Check::Count(4, 65_536), "Initial size of a population.";
-        growth: Check::Count(1, MOST), "Number of evaluations after which a population grows by one member.";
+        population: Check::Count(4, 65_536), "Initial size of a population; three times as many with three objectives.";
+        growth: Check::Count(1, MOST), "Number of evaluations after which a population grows by one member; three times as many with three objectives.";
         most: Check::Count(4, 65_536), "Largest size of a population.";
         neighbours: Check::Count(1, 65_536), "Number of neighbours on either side along the front.";
         scale: Check::Positive, "Scale factor of the differences.";
