@@ -9,13 +9,13 @@ use predicates::str::contains;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::support::{DESIGN, check, folder, kinefront, optimize, repetitions, report, resume, small_study, tables};
+use super::support::{DESIGN, check, folder, kinefront, optimize, repetitions, report, resume, short_study, tables};
 
 /// The line that ends a table decides: only a last row without its end of line is forgiven, and that is said.
 #[test]
 fn damage_is_never_read_as_less_data() {
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let run = folder.path().join("run");
     optimize(&study, &run, &["--evaluations", "120"]);
     let table = run.join("designs.csv");
@@ -142,7 +142,7 @@ fn a_table_cut_at_every_byte_resumes() {
 #[test]
 fn a_resumed_run_names_what_was_changed() {
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let run = folder.path().join("run");
     optimize(&study, &run, &["--evaluations", "300"]);
     // Without the report, checksums are unknown, and only the rows themselves can tell.
@@ -199,7 +199,7 @@ fn a_resumed_run_names_what_was_changed() {
 #[test]
 fn a_folder_is_repaired_where_nothing_is_guessed() {
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let [whole, run] = ["whole", "run"].map(|name| folder.path().join(name));
     optimize(&study, &whole, &["--evaluations", "180"]);
     let copy = |to: &Path| {
@@ -330,7 +330,7 @@ fn input_beyond_measure_is_refused() {
 #[test]
 fn a_damaged_recording_does_no_harm() {
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let run = folder.path().join("run");
     optimize(&study, &run, &["--evaluations", "60"]);
     let path = run.join("recording.rrd");
@@ -366,7 +366,7 @@ fn a_damaged_recording_does_no_harm() {
 fn any_path_and_a_pipe_will_do() {
     use std::os::unix::ffi::OsStrExt;
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let odd = folder.path().join(std::ffi::OsStr::from_bytes(b"run \xff"));
     optimize(&study, &odd, &["--evaluations", "60"]);
     let front = fs::read_to_string(odd.join("front.csv")).expect("a front");
@@ -414,7 +414,7 @@ fn any_path_and_a_pipe_will_do() {
 #[test]
 fn remains_block_nothing() {
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     // A start that was killed after the first lines of its table.
     let run = folder.path().join("run");
     fs::create_dir(&run).expect("a folder");

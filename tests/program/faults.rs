@@ -5,14 +5,14 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use super::support::{folder, optimize, program, sample, small_study, tables, wait_for};
+use super::support::{folder, optimize, program, sample, short_study, tables, wait_for};
 
 /// A run whose folder is removed, moved or truncated ends and says so, and leaves no gap in its table.
 #[cfg(unix)]
 #[test]
 fn a_run_notices_that_its_folder_is_gone() {
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     type Happening = fn(&Path);
     let faults: [(&str, Happening); 3] = [
         ("removed", |run| fs::remove_dir_all(run).expect("a folder")),
@@ -73,7 +73,7 @@ fn a_full_disk_costs_no_design() {
         return;
     }
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let whole = folder.path().join("whole");
     optimize(&study, &whole, &["--evaluations", "900"]);
     for kib in sample([8, 16, 40, 120, 200, 300, 400, 440, 480, 600, 2000, 6000].iter(), 4) {
@@ -137,7 +137,7 @@ fn a_full_disk_costs_no_design() {
 #[test]
 fn a_run_makes_no_attempt_to_reach_a_network() {
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let [whole, run] = ["whole", "run"].map(|name| folder.path().join(name));
     let log = folder.path().join("calls");
     optimize(&study, &whole, &["--evaluations", "90"]);
@@ -176,7 +176,7 @@ fn a_run_makes_no_attempt_to_reach_a_network() {
 #[test]
 fn a_report_is_replaced_at_once() {
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let (run, page) = (folder.path().join("run"), folder.path().join("page"));
     optimize(&study, &run, &["--evaluations", "120", "--no-recording"]);
     let replace = || {
@@ -224,7 +224,7 @@ fn a_report_is_replaced_at_once() {
 #[test]
 fn files_are_synchronised_before_they_appear() {
     let folder = folder();
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     let (run, log) = (folder.path().join("run"), folder.path().join("calls"));
     let traced = Command::new("strace")
         .args([

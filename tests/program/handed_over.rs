@@ -9,7 +9,7 @@ use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
 
-use super::support::{DESIGN, check, folder, kinefront, optimize, python, resume, sample, says, small_study, tables};
+use super::support::{DESIGN, check, folder, kinefront, optimize, python, resume, sample, says, short_study, tables};
 
 /// Longest time of a command on a folder from elsewhere. Alone, the longest one takes 3 s (a report, which optimizes designs of the front
 /// again); beside other tests on two cores it has taken more than 10 s. A command that hangs never ends.
@@ -20,7 +20,7 @@ fn run_of(folder: &Path, name: &str, more: &[&str]) -> PathBuf {
     let run = folder.join(name);
     let arguments = ["--evaluations", "90", "--no-recording"];
     let arguments: Vec<&str> = arguments.iter().chain(more).copied().collect();
-    optimize(&small_study(folder), &run, &arguments);
+    optimize(&short_study(folder), &run, &arguments);
     run
 }
 
@@ -242,7 +242,7 @@ fn nothing_outside_the_folder_is_written_through_a_link() {
     let victim = folder.path().join("victim");
     let untouched = || assert_eq!(fs::read(&victim).expect("the victim"), b"precious");
     fs::write(&victim, "precious").expect("a victim");
-    let study = small_study(folder.path());
+    let study = short_study(folder.path());
     // A name that a temporary file once had, before the run.
     let run = folder.path().join("run");
     fs::create_dir(&run).expect("a folder");
@@ -463,7 +463,7 @@ fn a_limit_of_the_size_of_files_is_told() {
     let script = format!(
         "ulimit -f 16; exec {} optimize {} --evaluations 600 --out {} --no-recording --quiet",
         env!("CARGO_BIN_EXE_kinefront"),
-        small_study(folder.path()).display(),
+        short_study(folder.path()).display(),
         run.display()
     );
     let ended = std::process::Command::new("sh")

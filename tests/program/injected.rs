@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use super::support::{
-    check, folder, is_thorough, kinefront, optimize, repetitions, resume, sample, small_study, tables,
+    check, folder, is_thorough, kinefront, optimize, repetitions, resume, sample, short_study, tables,
 };
 
 /// Calls that ask for memory.
@@ -102,9 +102,9 @@ const SCENARIOS: [Scenario; 6] = [
     },
 ];
 
-/// Writes a small study with few designs on its front, which make each of the many runs short.
-fn short_study(folder: &Path) -> PathBuf {
-    let study = small_study(folder);
+/// Writes a short study with few designs on its front, which make each of the many runs short.
+fn study_of_few(folder: &Path) -> PathBuf {
+    let study = short_study(folder);
     let text = fs::read_to_string(&study).expect("a study");
     fs::write(&study, text.replace("front_designs = 8", "front_designs = 3")).expect("a study");
     study
@@ -127,7 +127,7 @@ fn calls_of_start(calls: &str) -> usize {
 fn disturb(arguments: &[PathBuf], calls: &str, error: &str, when: usize) -> (Output, bool) {
     let log = tempfile::NamedTempFile::new().expect("a file");
     let output = Command::new("strace")
-        .args(["-f", "-qq", "-o"])
+        .args(["-f", "-qq", "--seccomp-bpf", "-o"])
         .arg(log.path())
         .args(["-e", &format!("trace={calls}")])
         .args(["-e", &format!("inject={calls}:error={error}:when={when}")])
@@ -153,7 +153,7 @@ struct Ground {
 impl Ground {
     fn new() -> Self {
         let folder = folder();
-        let study = short_study(folder.path());
+        let study = study_of_few(folder.path());
         let make = |name: &str, more: &[&str]| {
             let out = folder.path().join(name);
             optimize(&study, &out, &[more, &["--no-recording"]].concat());

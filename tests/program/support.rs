@@ -44,6 +44,15 @@ pub fn small_study(folder: &Path) -> PathBuf {
     path
 }
 
+/// Writes a small study of one architecture and returns its path, for tests of files, in which the designs do not matter.
+pub fn short_study(folder: &Path) -> PathBuf {
+    let path = folder.join("small.toml");
+    let text = kinefront_testkit::small_study(600);
+    let text = text.replace("[grid.reference]", "architectures = [\"3-RPR\"]\n[grid.reference]");
+    std::fs::write(&path, text).expect("a study file");
+    path
+}
+
 /// Runs a command that must succeed and returns the JSON that it prints.
 pub fn json<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Value {
     let told = kinefront().args(arguments).assert().success();

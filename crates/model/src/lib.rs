@@ -79,6 +79,7 @@
 //! | [`workspace`] | regular workspace of a design |
 //! | [`evaluation`] | evaluation of a design: objectives, constraints, margins |
 //! | [`enclosure`] | enclosures of real functions over boxes |
+//! | [`workers`] | threads of a caller for one evaluation |
 //! | [`certify`] | proofs that every pose of a disc is feasible |
 
 #[macro_use]
@@ -96,4 +97,5 @@ mod pose;
 pub mod spatial;
 pub mod stiffness;
 pub mod strength;
+pub mod workers;
 pub mod workspace;

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use kinefront_model::evaluation::PoseScalar;
-use kinefront_model::mechanism::{AnyLeg, Design};
+use kinefront_model::mechanism::{AnyLeg, Design, Leg};
 use kinefront_model::spatial::{LEGS, Rotation};
 use kinefront_model::workspace::PoseEvaluator;
 
@@ -45,6 +45,12 @@ impl Prepared {
     /// The evaluator of poses.
     pub fn evaluator(&self) -> &dyn PoseEvaluator {
         &*self.evaluator
+    }
+
+    /// Returns the distance of the farthest anchor of the base from `O` \[m\].
+    pub fn base_radius(&self) -> f64 {
+        let distances = self.legs.iter().map(|leg| leg.frame().anchor_distance);
+        distances.fold(0.0, f64::max)
     }
 
     /// Returns the distance of a joint from one of its limits \[m\], negative beyond it; `None` where the leg does not reach the pose.

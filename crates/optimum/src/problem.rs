@@ -228,6 +228,10 @@ impl LocalProblem {
         }
         let of_designs = settings.limits.iter().enumerate();
         found.extend(of_designs.filter_map(|(place, limit)| self.requirement_of(place, limit)));
+        let of_footprint = |requirement: &Requirement| requirement.scalar_in(settings) == Some(PoseScalar::Footprint);
+        if found.iter().any(of_footprint) {
+            found.push(Requirement::Base);
+        }
         found
     }
 
@@ -402,17 +406,11 @@ impl LocalProblem {
         let design = self.design(unknowns)?;
         let legs = [0, 1, 2].map(|leg| AnyLeg::new(&design, &self.question.settings.legs, leg));
         let mut evaluator = self.model.pose_evaluator(&design);
-        for requirement in &self.requirements {
-            match *requirement {
-                Requirement::Scalar(scalar) => evaluator.ask_for(scalar),
-                Requirement::Quantity(place) => {
-                    if let Quantity::Worst(scalar) = self.question.settings.limits[place].quantity {
-                        evaluator.ask_for(scalar);
-                    }
-                }
-                _ => {}
-            }
+        let compared = self.requirements.iter();
+        for scalar in compared.filter_map(|requirement| requirement.scalar_in(&self.question.settings)) {
+            evaluator.ask_for(scalar);
         }
+        evaluator.leave_out_base();
         let home = match self.home_place() {
             Some(place) => unknowns[place],
             None => self.question.workspace.home_phi_deg.unwrap_or(0.0).to_radians(),

@@ -39,6 +39,8 @@ pub enum Requirement {
     Determinant,
     /// A limit of the question that is none of poses, by its place.
     Quantity(usize),
+    /// The base lies within the limit of the footprint, of which a scalar or a quantity compares the members alone.
+    Base,
     /// g1: a leg and the platform bridge the distance to the base.
     Assembly,
 }

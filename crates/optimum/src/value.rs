@@ -1,6 +1,6 @@
 //! By how much a requirement holds, as a number that is not negative where it does.
 
-use kinefront_model::evaluation::{Better, MarginUnit, PoseScalar, PoseScalars, Quantity};
+use kinefront_model::evaluation::{Better, MarginUnit, ModelSettings, PoseScalar, PoseScalars, Quantity};
 use kinefront_model::mechanism::MemberKind;
 use nalgebra::{DMatrix, DVector};
 
@@ -22,11 +22,21 @@ impl Requirement {
     /// Returns whether the requirement has a value at each pose.
     pub(crate) fn is_of_poses(self, problem: &LocalProblem) -> bool {
         match self {
-            Requirement::Assembly => false,
-            Requirement::Quantity(place) => {
-                matches!(problem.question().settings.limits[place].quantity, Quantity::Worst(_))
-            }
+            Requirement::Assembly | Requirement::Base => false,
+            Requirement::Quantity(_) => self.scalar_in(&problem.question().settings).is_some(),
             _ => true,
+        }
+    }
+
+    /// Returns the scalar of a pose that the requirement compares with a limit of `settings`, if it is one.
+    pub(crate) fn scalar_in(self, settings: &ModelSettings) -> Option<PoseScalar> {
+        match self {
+            Requirement::Scalar(scalar) => Some(scalar),
+            Requirement::Quantity(place) => match settings.limits[place].quantity {
+                Quantity::Worst(scalar) => Some(scalar),
+                _ => None,
+            },
+            _ => None,
         }
     }
 
@@ -55,6 +65,7 @@ impl Requirement {
                 .entry()
                 .label
                 .to_owned(),
+            Requirement::Base => "footprint of the base".to_owned(),
             Requirement::Assembly => "assembly".to_owned(),
         }
     }
@@ -74,6 +85,7 @@ impl Requirement {
                 .entry()
                 .key
                 .to_owned(),
+            Requirement::Base => "footprint_m:base".to_owned(),
             Requirement::Assembly => "assembly".to_owned(),
         }
     }
@@ -94,12 +106,13 @@ impl LocalProblem {
                 let assembly = self.model.assembly(&prepared.design);
                 (assembly.value - assembly.threshold) / prepared.design.base_radius()
             }
+            Requirement::Base => self.footprint_beyond_base(prepared),
             Requirement::Quantity(index) if !requirement.is_of_poses(self) => {
                 let limit = &self.question().settings.limits[index];
                 self.excess_of_quantity(prepared, limit).unwrap_or(NOWHERE)
             }
             Requirement::Scalar(_) | Requirement::Determinant | Requirement::Quantity(_) => {
-                let scalars = self.scalars(prepared, place, self.scalar_of(requirement));
+                let scalars = self.scalars(prepared, place, requirement.scalar_in(&self.question().settings));
                 self.of_scalars(prepared, requirement, |scalar| scalars[scalar])
             }
         };
@@ -110,16 +123,21 @@ impl LocalProblem {
         }
     }
 
-    /// Returns the scalar that a requirement compares; `None` for one of those that every evaluation of a pose determines, or for none.
-    fn scalar_of(&self, requirement: Requirement) -> Option<PoseScalar> {
-        match requirement {
-            Requirement::Scalar(scalar) => Some(scalar),
-            Requirement::Quantity(index) => match self.question().settings.limits[index].quantity {
-                Quantity::Worst(scalar) => Some(scalar),
-                _ => None,
-            },
+    /// Returns by how much the limits of the footprint exceed the distance of the farthest anchor of the base, as a logarithm.
+    fn footprint_beyond_base(&self, prepared: &Prepared) -> f64 {
+        let farthest = prepared.base_radius();
+        let of_scalar = |requirement: &Requirement| match *requirement {
+            Requirement::Scalar(PoseScalar::Footprint) => {
+                Some(libm::log(self.limit(prepared, PoseScalar::Footprint) / farthest))
+            }
+            Requirement::Quantity(index) => {
+                let limit = &self.question().settings.limits[index];
+                (limit.quantity == Quantity::Worst(PoseScalar::Footprint)).then(|| excess(farthest, limit))
+            }
             _ => None,
-        }
+        };
+        let excesses = self.requirements().iter().filter_map(of_scalar);
+        excesses.fold(f64::INFINITY, f64::min)
     }
 
     fn scalars(&self, prepared: &Prepared, place: &Place, scalar: Option<PoseScalar>) -> PoseScalars<f64> {

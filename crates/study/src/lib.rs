@@ -32,6 +32,7 @@ mod front;
 mod levels;
 mod local;
 mod overrides;
+mod pool;
 mod prepared;
 mod problem;
 mod prove;
@@ -64,6 +65,7 @@ pub use local::{
     usual_range,
 };
 pub use overrides::Overrides;
+pub use pool::PoolWorkers;
 pub use prepared::PreparedStudy;
 pub use problem::DesignProblem;
 pub use prove::{FrontProver, proved_front};

@@ -7,6 +7,7 @@ use kinefront_model::certify::{Certificate, CertifyOptions, ProofObserver, Verdi
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, PoseScalar};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
+use kinefront_model::workers::{OneWorker, Workers};
 use kinefront_model::workspace::Region;
 use kinefront_optimize::{Archive, Objectives, hypervolume, subset};
 
@@ -14,7 +15,10 @@ use kinefront_optimize::{Archive, Objectives, hypervolume, subset};
 const RESTORED: f64 = 0.999;
 
 /// Slack, as a logarithm or a share of `R`, that makes a proof easier of a design whose requirements hold with less.
-const SLACK: f64 = 1e-4;
+pub(crate) const SLACK: f64 = 1e-4;
+
+/// Number of boxes, a multiple of what most proofs take, after which a design with more slack is proved while a person waits.
+const MAX_BOXES_AT_ONCE: usize = 30_000;
 
 /// Ends a proof once a function returns false.
 struct Until<'a>(&'a dyn Fn() -> bool);
@@ -73,12 +77,31 @@ struct Pocket {
 pub struct FrontProver<'a> {
     problem: &'a DesignProblem,
     goes_on: &'a (dyn Fn() -> bool + Sync),
+    /// Threads for each single proof.
+    workers: &'a dyn Workers,
+    /// Largest number of boxes before a design with more slack is proved instead.
+    max_boxes: usize,
 }
 
 impl<'a> FrontProver<'a> {
     /// Prepares the proofs of designs of a problem. Once `goes_on` returns false, proofs end early, and the result is not to be used.
     pub fn new(problem: &'a DesignProblem, goes_on: &'a (dyn Fn() -> bool + Sync)) -> Self {
-        Self { problem, goes_on }
+        Self {
+            problem,
+            goes_on,
+            workers: &OneWorker,
+            max_boxes: CertifyOptions::MAX_BOXES,
+        }
+    }
+
+    /// Prepares the proof of one design that a person waits for, on several threads. A proof that takes long is given up early for one of a
+    /// design with more slack.
+    pub fn at_once(problem: &'a DesignProblem, workers: &'a dyn Workers) -> Self {
+        Self {
+            workers,
+            max_boxes: MAX_BOXES_AT_ONCE,
+            ..Self::new(problem, &|| true)
+        }
     }
 
     fn model(&self) -> &Model {
@@ -87,7 +110,7 @@ impl<'a> FrontProver<'a> {
 
     /// Proves the workspace of a design. If it stays open, one near it with more slack is proved instead, if possible.
     pub fn prove(&self, member: &FrontMember) -> ProvedMember {
-        let mut proved = self.prove_one(member);
+        let mut proved = self.prove_one(member, self.max_boxes);
         if proved.reported().is_some_and(FrontMember::is_open) && (self.goes_on)() {
             proved.instead = self.proved_with_slack(member).map(|instead| (instead, 0.0));
         }
@@ -96,15 +119,16 @@ impl<'a> FrontProver<'a> {
 
     /// Returns a design near a member that keeps every requirement with more slack, if it is proved.
     fn proved_with_slack(&self, member: &FrontMember) -> Option<FrontMember> {
-        let evaluation = self.problem.with_slack(&member.evaluation, SLACK)?;
-        let proved = self.prove_one(&FrontMember {
+        let evaluation = self.problem.with_slack(&member.evaluation, SLACK, self.workers)?;
+        let stronger = FrontMember {
             evaluation,
             ..member.clone()
-        });
+        };
+        let proved = self.prove_one(&stronger, CertifyOptions::MAX_BOXES);
         proved.reported().filter(|member| member.is_proved()).cloned()
     }
 
-    fn prove_one(&self, member: &FrontMember) -> ProvedMember {
+    fn prove_one(&self, member: &FrontMember, max_boxes: usize) -> ProvedMember {
         let mut proved = ProvedMember::unproved(member.clone());
         let evaluation = &member.evaluation;
         let Some(claim) = self.model().claim(evaluation) else {
@@ -113,6 +137,7 @@ impl<'a> FrontProver<'a> {
         let wanted = self.wanted_radius(claim.claimed_radius);
         let first = CertifyOptions {
             enough: wanted,
+            max_boxes,
             ..claim
         };
         let Some(mut certificate) = self.certify(&evaluation.design, &first) else {
@@ -168,7 +193,7 @@ impl<'a> FrontProver<'a> {
     fn certify(&self, design: &Design, options: &CertifyOptions) -> Option<Certificate> {
         // Bars without a usable stiffness have no proof: such a design, of a study without stiffness, stays open.
         self.model()
-            .certify_observed(design, options, &mut Until(self.goes_on))
+            .certify_by(self.workers, design, options, &mut Until(self.goes_on))
             .ok()
     }
 

@@ -24,7 +24,7 @@ use kinefront_recording::{
     FrontPoint, LiveScene, Pinned, RecordingError, SceneLegends, Shown, Viewpoint, VisibleLayers,
 };
 use kinefront_scene::{BentBar, MotionPath, WorkspaceProof, workspace_proof};
-use kinefront_study::PreparedStudy;
+use kinefront_study::{PoolWorkers, PreparedStudy};
 
 /// Time without a newer design after which a design is verified.
 const RESTING: Duration = Duration::from_millis(150);
@@ -224,7 +224,7 @@ fn verify_requests(shared: &Shared) {
         let evaluation = if known.verified {
             known.evaluation
         } else {
-            Arc::new(study.model().evaluate(&design, GridChoice::Fine))
+            Arc::new(study.model().evaluate_by(&PoolWorkers, &design, GridChoice::Fine))
         };
         *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) =
             Some((Arc::clone(&study), Arc::clone(&evaluation)));
@@ -334,7 +334,7 @@ fn step(state: &mut SceneState, shared: &Shared, request: &Request) -> Result<()
     let new_pins = before.as_ref().is_none_or(|before| before.pins != request.pins);
     if new_pins {
         // A design that was verified as the selected one is not evaluated again; the others are, as the tables show them.
-        let fine = |design: &Design| model.evaluate(design, GridChoice::Fine);
+        let fine = |design: &Design| model.evaluate_by(&PoolWorkers, design, GridChoice::Fine);
         let before = std::mem::take(&mut state.pins);
         let known = |design: &Design| before.iter().find(|pin| pin.design == *design).cloned();
         let verified = |design: &Design| {

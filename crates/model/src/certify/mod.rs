@@ -5,6 +5,7 @@
 //! ([`enclosure`](crate::enclosure)), and divided until each constraint is proved on each of them or a pose is found that violates
 //! one.
 
+mod examiner;
 mod forms;
 mod homes;
 mod motion;
@@ -20,6 +21,7 @@ use crate::enclosure::{PoseEnclosure, TaylorModel, VARIABLES};
 use crate::evaluation::{Evaluation, Model, PoseScalar};
 use crate::mechanism::Design;
 use crate::spatial::Pose;
+use crate::workers::{OneWorker, Workers};
 
 /// What to prove.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -235,6 +237,21 @@ impl Model {
         options: &CertifyOptions,
         observer: &mut dyn ProofObserver,
     ) -> Result<Certificate, CertifyError> {
+        self.certify_by(&OneWorker, design, options, observer)
+    }
+
+    /// Proves bounds like [`Model::certify_observed`], on several threads where the claim is about a prescribed region, which changes no bit
+    /// of the result.
+    ///
+    /// # Errors
+    /// As [`Model::certify`].
+    pub fn certify_by(
+        &self,
+        workers: &dyn Workers,
+        design: &Design,
+        options: &CertifyOptions,
+        observer: &mut dyn ProofObserver,
+    ) -> Result<Certificate, CertifyError> {
         if let Some(scalar) = forms::uncovered(&self.thresholds_of(design)) {
             return Err(CertifyError::Uncovered(scalar));
         }
@@ -276,7 +293,7 @@ impl Model {
             (1e-12..1.0).contains(&tolerance),
             "from 1e-12 to below 1",
         )?;
-        search::certify(self, design, options, observer)
+        search::certify(self, design, options, observer, workers)
     }
 
     /// Returns a distance that the workspace radius exceeds at no home orientation: with `Certificate::lower` it encloses `R_w`

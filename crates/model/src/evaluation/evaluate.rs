@@ -9,6 +9,7 @@ use crate::lanes::InstructionSet;
 use crate::mechanism::{Design, Leg};
 use crate::pose::{EXAMINED_ALWAYS, PoseChecker, PoseScalar, Thresholds};
 use crate::spatial::Pose;
+use crate::workers::{OneWorker, Workers};
 use crate::workspace::{Region, RegularWorkspace, WorkspaceSampling, search, search_prescribed};
 
 impl Model {
@@ -22,7 +23,14 @@ impl Model {
         with_leg!(design.architecture(), L => {
             let mut checker = self.checker::<L>(design);
             checker.instructions = instructions;
-            evaluate(self, &checker, design, self.sampling(grid)).0
+            evaluate(self, &checker, design, self.sampling(grid), &OneWorker).0
+        })
+    }
+
+    /// Evaluates a design like [`Model::evaluate`], on several threads where its region has many poses, which changes no bit of the result.
+    pub fn evaluate_by(&self, workers: &dyn Workers, design: &Design, grid: GridChoice) -> Evaluation {
+        with_leg!(design.architecture(), L => {
+            evaluate(self, &self.checker::<L>(design), design, self.sampling(grid), workers).0
         })
     }
 
@@ -32,7 +40,7 @@ impl Model {
     pub fn evaluate_in_full(&self, design: &Design, grid: GridChoice) -> Evaluation {
         with_leg!(design.architecture(), L => {
             let checker = self.checker::<L>(design);
-            let (mut evaluation, found) = evaluate(self, &checker, design, self.sampling(grid));
+            let (mut evaluation, found) = evaluate(self, &checker, design, self.sampling(grid), &OneWorker);
             if !evaluation.is_feasible() {
                 quantities::add_to_limits(&mut evaluation, self, &checker, &found);
             }
@@ -47,13 +55,15 @@ fn evaluate<L: Leg>(
     checker: &PoseChecker<L>,
     design: &Design,
     sampling: &WorkspaceSampling,
+    workers: &dyn Workers,
 ) -> (Evaluation, RegularWorkspace) {
     let symmetric = model.is_symmetric_in(design, checker.bodies.stack().order);
     let (found, worst) = match sampling.spec().region {
         Region::Largest => (search(checker, sampling, design.base_radius(), symmetric), None),
         _ => {
             let objective = examined_objective(model, &checker.thresholds);
-            let (found, worst) = search_prescribed(checker, sampling, design.base_radius(), symmetric, objective);
+            let (found, worst) =
+                search_prescribed(checker, sampling, design.base_radius(), symmetric, objective, workers);
             (found, Some(worst))
         }
     };
@@ -63,6 +73,7 @@ fn evaluate<L: Leg>(
         checker,
         design,
         found: &found,
+        workers,
     };
     let grid = sampling.grid();
     let (constraints, mut violation, home) = match (found.home, worst) {
@@ -89,7 +100,7 @@ fn evaluate<L: Leg>(
             &found,
             home,
             &positions,
-            grid,
+            (grid, workers),
         );
         let home_phi_deg = found.orientations[home].phi_deg;
         let frame = model.task_frame(design, workspace_radius, home_phi_deg);

@@ -305,6 +305,7 @@ impl Model {
             longest_lever: design.architecture().longest_lever(design),
             actuator: design.architecture().actuator(),
             assembly: worst_assembly(&manipulator.legs, &self.settings.legs.geometry),
+            leaves_out_base: false,
             in_plane_force: self.settings.in_plane_force,
             thresholds,
             asked: ScalarSet::default(),

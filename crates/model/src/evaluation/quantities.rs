@@ -10,6 +10,7 @@ use crate::dynamics::TaskFrame;
 use crate::mechanism::{Design, Leg};
 use crate::pose::{PoseChecker, ScalarSet};
 use crate::spatial::Pose;
+use crate::workers::{OneWorker, Workers, map};
 use crate::workspace::{Grid, Positions, RegularWorkspace, ValueColumns};
 
 /// Returns the quantities of a design that its constraints and dimensions determine, as far as the study asks for them.
@@ -51,7 +52,7 @@ pub(super) fn add_of_region<L: Leg>(
     found: &RegularWorkspace,
     home: usize,
     positions: &Positions,
-    grid: &Grid,
+    (grid, workers): (&Grid, &dyn Workers),
 ) {
     let asked = |quantity: Quantity| model.settings().quantities.contains(quantity);
     if asked(Quantity::FrameFrequency) {
@@ -76,7 +77,7 @@ pub(super) fn add_of_region<L: Leg>(
     };
     let left: ScalarSet = set.iter().filter(|scalar| !searched.contains(*scalar)).collect();
     let window = || found.orientation_grid.window(home);
-    let mut least = least_over(checker, found, left, window(), positions);
+    let mut least = least_over(checker, found, left, window(), positions, workers);
     for index in window() {
         for scalar in set.iter().filter(|scalar| searched.contains(*scalar)) {
             let least = &mut least[scalar as usize];
@@ -96,15 +97,19 @@ fn least_over<L: Leg>(
     set: ScalarSet,
     orientations: impl Iterator<Item = usize>,
     positions: &Positions,
+    workers: &dyn Workers,
 ) -> [f64; PoseScalar::COUNT] {
     let mut least = [f64::INFINITY; PoseScalar::COUNT];
     if set.is_empty() {
         return least;
     }
     let indices = positions.indices();
-    for index in orientations {
-        let arms = &found.orientations[index].arms;
-        let minima = checker.worst(set, arms, &positions.xs, &positions.ys, &indices);
+    let orientations: Vec<usize> = orientations.collect();
+    let of_orientation = |index: &usize| {
+        let arms = &found.orientations[*index].arms;
+        checker.worst(set, arms, &positions.xs, &positions.ys, &indices)
+    };
+    for minima in map(workers, &orientations, of_orientation) {
         for (least, minimum) in least.iter_mut().zip(minima) {
             *least = least.min(minimum.value);
         }
@@ -142,7 +147,7 @@ pub(super) fn add_to_limits<L: Leg>(
         }
     };
     positions.pad();
-    let least = least_over(checker, found, set, orientations.into_iter(), &positions);
+    let least = least_over(checker, found, set, orientations.into_iter(), &positions, &OneWorker);
     for limit in &mut evaluation.limits {
         if let Some(scalar) = scalar_of(limit)
             && least[scalar as usize].is_finite()

@@ -8,6 +8,7 @@ use crate::clearance::Clearance;
 use crate::mechanism::{Design, Leg};
 use crate::pose::{PoseChecker, ScalarSet};
 use crate::spatial::Pose;
+use crate::workers::{Workers, map};
 use crate::workspace::{Grid, OrientationLanes, Positions, RegularWorkspace, ValueColumns};
 
 /// Largest number of rings of a disc, besides its centre, on which values are evaluated; smooth fields need no more.
@@ -25,6 +26,8 @@ pub(super) struct ConstraintSearch<'a, L> {
     pub checker: &'a PoseChecker<L>,
     pub design: &'a Design,
     pub found: &'a RegularWorkspace,
+    /// Threads for the orientations of a window.
+    pub workers: &'a dyn Workers,
 }
 
 /// Returns the centre of a disc, and the positions on equal rings about it in some directions, direction by direction. The rings are no
@@ -189,30 +192,30 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         let of_reports = reports.iter().filter(|report| report.required);
         let scalars = of_reports.filter_map(|report| report.constraint.scalar());
         let further: ScalarSet = scalars.filter(|scalar| !PoseScalar::ALWAYS.contains(scalar)).collect();
-        for index in found.orientation_grid.window(home) {
-            let orientation = &found.orientations[index];
-            let oriented = OrientationLanes {
-                arms: &orientation.arms,
-                sign,
-            };
+        let window: Vec<usize> = found.orientation_grid.window(home).collect();
+        for part in window.chunks(self.workers.count().max(1)) {
             let clearance = reports[Constraint::Clearance as usize].value.unwrap_or(f64::INFINITY);
-            let minima = self.checker.smallest(oriented, &disc.xs, &disc.ys, &indices, clearance);
-            let further = self
-                .checker
-                .worst(further, &orientation.arms, &disc.xs, &disc.ys, &indices);
-            for report in &mut reports {
-                let Some(scalar) = report.constraint.scalar() else {
-                    continue;
-                };
-                let (minimum, sign) = match minima.get(scalar as usize) {
-                    Some(minimum) => (*minimum, 1.0),
-                    None if report.required => (further[scalar as usize], scalar.entry().quantity.better.sign()),
-                    None => continue,
-                };
-                if minimum.value.is_finite() {
-                    let (x, y) = (disc.xs[minimum.index], disc.ys[minimum.index]);
-                    let pose = || Pose::new(x, y, orientation.phi_deg.to_radians());
-                    self.lower(report, sign * minimum.value, pose);
+            let of_orientation = |index: &usize| {
+                let arms = &found.orientations[*index].arms;
+                let oriented = OrientationLanes { arms, sign };
+                let minima = self.checker.smallest(oriented, &disc.xs, &disc.ys, &indices, clearance);
+                (minima, self.checker.worst(further, arms, &disc.xs, &disc.ys, &indices))
+            };
+            for (index, (minima, further)) in part.iter().zip(map(self.workers, part, of_orientation)) {
+                for report in &mut reports {
+                    let Some(scalar) = report.constraint.scalar() else {
+                        continue;
+                    };
+                    let (minimum, sign) = match minima.get(scalar as usize) {
+                        Some(minimum) => (*minimum, 1.0),
+                        None if report.required => (further[scalar as usize], scalar.entry().quantity.better.sign()),
+                        None => continue,
+                    };
+                    if minimum.value.is_finite() {
+                        let (x, y) = (disc.xs[minimum.index], disc.ys[minimum.index]);
+                        let pose = || Pose::new(x, y, found.orientations[*index].phi_deg.to_radians());
+                        self.lower(report, sign * minimum.value, pose);
+                    }
                 }
             }
         }

@@ -38,6 +38,8 @@ pub(crate) struct PoseChecker<L> {
     pub actuator: JointKind,
     /// What g1 compares.
     pub assembly: Assembly,
+    /// Whether the footprint is that of the members alone.
+    pub leaves_out_base: bool,
     /// In-plane force under which the displacement is computed \[N\].
     pub in_plane_force: f64,
     /// What a feasible pose must keep; see [`PoseChecker::set_threshold`].

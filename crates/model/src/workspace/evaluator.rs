@@ -23,6 +23,9 @@ pub trait PoseEvaluator: Sync {
     /// Computes a scalar besides those that every evaluation determines and those that are limited.
     fn ask_for(&mut self, scalar: PoseScalar);
 
+    /// Leaves the base out of the footprint, for methods that follow each of the two where both reach equally far.
+    fn leave_out_base(&mut self);
+
     /// Selects an instruction set, which changes no bit of a result.
     fn use_instructions(&mut self, instructions: InstructionSet);
 
@@ -73,6 +76,10 @@ impl<L: Leg> PoseEvaluator for PoseChecker<L> {
 
     fn ask_for(&mut self, scalar: PoseScalar) {
         PoseChecker::ask_for(self, scalar);
+    }
+
+    fn leave_out_base(&mut self) {
+        self.leaves_out_base = true;
     }
 
     fn use_instructions(&mut self, instructions: InstructionSet) {

@@ -16,6 +16,7 @@ use super::{Grid, Region, ValueColumns, WorkspaceSampling, WorkspaceSpec};
 use crate::lanes::MAX_LANES;
 use crate::mechanism::Leg;
 use crate::pose::{PoseChecker, PoseScalar, PoseScalars, ScalarSet};
+use crate::workers::{Workers, map};
 
 /// Margin of a window that a singularity cuts: as if a constraint were missed entirely.
 const CUT: f64 = -1.0;
@@ -258,22 +259,23 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
 ///
 /// `step_base` is the base radius `R`, by which margins of lengths are divided and of which the ray step is a fraction.
 /// `symmetric` states that a rotation by 120° maps the design onto itself. Of the home orientations that keep all limits, the one is
-/// returned whose worst value of `objective` is the best, which is a scalar that is examined at every pose.
+/// returned whose worst value of `objective` is the best, which is a scalar that is examined at every pose. It is the first of the best,
+/// whatever is examined besides it, so that the number of `workers` changes nothing.
 pub fn search_prescribed<L: Leg>(
     checker: &PoseChecker<L>,
     sampling: &WorkspaceSampling,
     step_base: f64,
     symmetric: bool,
     objective: Option<PoseScalar>,
+    workers: &dyn Workers,
 ) -> (RegularWorkspace, f64) {
     let (spec, orientation_grid) = (sampling.spec(), *sampling.orientation_grid());
     let mut margins = RegionMargins::new(checker.clone(), sampling, step_base, symmetric);
     margins.kept = objective.into_iter().fold(margins.kept, ScalarSet::with);
     let signs = &margins.signs;
     let standing_of = |found: &Examined| Standing::new(found, objective);
-    let mut worst: Vec<Standing> = (0..signs.len())
-        .map(|k| standing_of(&margins.examine(k, Stage::First)))
-        .collect();
+    let all: Vec<usize> = (0..signs.len()).collect();
+    let mut worst = map(workers, &all, |k| standing_of(&margins.examine(*k, Stage::First)));
     let stages = margins.stages(objective);
     let mut examined = vec![1; worst.len()];
     let mut slow = match margins.quick {
@@ -302,22 +304,25 @@ pub fn search_prescribed<L: Leg>(
         });
         let home = homes.start + leader;
         // Within a window, a stage begins when those before it have ended: they may show that another window is better.
-        let least = orientation_grid.window(home).min_by_key(|&k| examined[k]);
-        let Some((k, &stage)) = least.and_then(|k| Some((k, stages.get(examined[k])?))) else {
+        let stage = orientation_grid.window(home).map(|k| examined[k]).min();
+        let Some((stage, &part)) = stage.and_then(|stage| Some((stage, stages.get(stage)?))) else {
             break (home, bounds[leader].margin);
         };
-        let found = margins.examine(k, stage);
-        examined[k] += 1;
-        worst[k] = worst[k].and(standing_of(&found));
-        if let Some(slow) = slow.get_mut(k) {
-            for scalar in margins.kept.iter() {
-                slow[scalar] = slow[scalar].min(found.kept[scalar]);
+        let due = orientation_grid.window(home).filter(|k| examined[*k] == stage);
+        let due: Vec<usize> = due.take(workers.count()).collect();
+        for (k, found) in due.iter().zip(map(workers, &due, |k| margins.examine(*k, part))) {
+            examined[*k] += 1;
+            worst[*k] = worst[*k].and(standing_of(&found));
+            if let Some(slow) = slow.get_mut(*k) {
+                for scalar in margins.kept.iter() {
+                    slow[scalar] = slow[scalar].min(found.kept[scalar]);
+                }
             }
-        }
-        // An orientation belongs to the windows of exactly those home orientations that lie in the window about it.
-        for home in orientation_grid.window(k).filter(|home| homes.contains(home)) {
-            let bound = &mut bounds[home - homes.start];
-            *bound = bound.and(worst[k]);
+            // An orientation belongs to the windows of exactly those home orientations that lie in the window about it.
+            for home in orientation_grid.window(*k).filter(|home| homes.contains(home)) {
+                let bound = &mut bounds[home - homes.start];
+                *bound = bound.and(worst[*k]);
+            }
         }
     };
     let found = RegularWorkspace {

@@ -85,31 +85,56 @@ impl DesignProblem {
     }
 
     /// Follows the entries of lists and catalogues beside those of a design, as long as one of them is better. Returns all answers, the best
-    /// first; `own` is that of the entries of the design itself. `solve` answers for a design and a home orientation \[rad\] near it; it is
-    /// told whether only an answer to the whole of a wish is of use.
+    /// first; `own` is that of the entries of the design itself. Where there is none yet, entries up to `reach` steps away are tried.
+    /// `solve` answers for a design and a home orientation \[rad\] near it; it is told whether only an answer to the whole of a wish is of
+    /// use.
     pub(super) fn follow_entries(
         &self,
         start: (Design, f64),
         own: Option<LocalAnswer>,
+        reach: usize,
         solve: &(dyn Fn(&Design, f64, bool) -> Option<LocalAnswer> + Sync),
     ) -> Vec<LocalAnswer> {
         let mut tried = vec![self.listed_values(&start.0)];
         let mut found: Vec<LocalAnswer> = own.into_iter().collect();
+        // Designs whose entries have no answer, and the number of steps to them.
+        let (mut without, mut steps) = (vec![start.0], 0);
         loop {
             let best = found.first();
-            let (design, home) = best.map_or(start, |best| (best.polished.design, best.polished.home));
+            let home = best.map_or(start.1, |best| best.polished.home);
             let is_whole = best.is_some_and(|best| best.part >= 1.0);
             let known = best.map(LocalAnswer::key);
-            let entries = self.other_entries(&design);
-            let mut others: Vec<Design> = entries.iter().filter_map(|entry| entry.applied_to(&design)).collect();
-            others.retain(|other| !tried.contains(&self.listed_values(other)));
-            tried.extend(others.iter().map(|other| self.listed_values(other)));
+            let from = best.map_or(without, |best| vec![best.polished.design]);
+            let mut others: Vec<Design> = Vec::new();
+            for design in &from {
+                let entries = self.other_entries(design);
+                for other in entries.iter().filter_map(|entry| entry.applied_to(design)) {
+                    let values = self.listed_values(&other);
+                    if !tried.contains(&values) {
+                        tried.push(values);
+                        others.push(other);
+                    }
+                }
+            }
             let next: Vec<Option<LocalAnswer>> = others.par_iter().map(|other| solve(other, home, is_whole)).collect();
             found.extend(next.into_iter().flatten());
             found.sort_by(|a, b| a.key().partial_cmp(&b.key()).unwrap_or(Ordering::Equal));
-            if found.first().map(LocalAnswer::key) == known {
+            steps += 1;
+            // What had no answer from far away may have one from nearby.
+            if known.is_none() && steps > 1 {
+                tried = found
+                    .iter()
+                    .map(|answer| self.listed_values(&answer.polished.design))
+                    .collect();
+            }
+            let has_ended = match found.first() {
+                Some(best) => Some(best.key()) == known,
+                None => others.is_empty() || steps >= reach,
+            };
+            if has_ended {
                 return found;
             }
+            without = others;
         }
     }
 

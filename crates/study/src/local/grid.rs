@@ -2,6 +2,7 @@
 
 use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
 use kinefront_model::mechanism::Design;
+use kinefront_model::workers::{OneWorker, Workers};
 use kinefront_model::workspace::Region;
 use kinefront_optimum::{LocalProblem, Polished};
 
@@ -14,9 +15,12 @@ pub(super) const ROOM: f64 = 2e-7;
 /// Share of the objective that a design for the fine grid may cost before the other neighbour of its home orientation is tried.
 const DEAR: f64 = 1e-3;
 
-/// Slacks that are tried in turn where the optimum does not hold on the fine grid: a clearance has kinks, so that its least value can lie
+/// The largest slack that is tried where the optimum does not hold on the fine grid: a clearance has kinks, so that its least value can lie
 /// between the poses that an optimum knows.
-pub(super) const ROOMS: [f64; 3] = [ROOM, 1e-5, 1e-3];
+pub(super) const LARGEST_ROOM: f64 = 1e-3;
+
+/// Slack that is added to that of a design which misses a requirement on the fine grid, as a multiple of what is missed.
+const MORE: f64 = 1.5;
 
 /// Number of optima with different entries of lists that are tried on the fine grid.
 pub(super) const ANSWERS: usize = 3;
@@ -52,10 +56,10 @@ impl DesignProblem {
         };
         let improved = self.improved(&found, &Aim::default());
         // Without lists, a front has other designs in place of one that does not hold.
-        let rooms = if has_lists { &ROOMS[..] } else { &ROOMS[..1] };
+        let most = if has_lists { LARGEST_ROOM } else { ROOM };
         let mut better = improved
             .iter()
-            .filter_map(|answer| self.held_on_fine_grid(answer, rooms))
+            .filter_map(|answer| self.held_on_fine_grid(answer, [ROOM, most], &OneWorker))
             .filter(|better| keeps_others(better) && is_no_worse(better));
         match better.next() {
             // It may be worse in the first objective, because it holds the others between the poses of the grid, too.
@@ -71,30 +75,63 @@ impl DesignProblem {
 
     /// Returns the best design near another one for an aim, verified on the fine grid; `None` if none holds there.
     pub(crate) fn verify_toward(&self, near: &Evaluation, aim: &Aim) -> Option<Evaluation> {
-        self.verify_with(near, aim, &ROOMS)
+        self.verify_with(near, aim, [ROOM, LARGEST_ROOM], &OneWorker)
     }
 
     /// Returns the best design near another one that keeps every requirement with a slack, verified on the fine grid; `None` if none does.
-    pub(crate) fn with_slack(&self, near: &Evaluation, slack: f64) -> Option<Evaluation> {
+    pub(crate) fn with_slack(&self, near: &Evaluation, slack: f64, workers: &dyn Workers) -> Option<Evaluation> {
         let aim = Aim {
             keeps_entries: true,
             ..Aim::default()
         };
-        self.verify_with(near, &aim, &[slack])
+        self.verify_with(near, &aim, [slack; 2], workers)
     }
 
-    fn verify_with(&self, near: &Evaluation, aim: &Aim, rooms: &[f64]) -> Option<Evaluation> {
+    fn verify_with(&self, near: &Evaluation, aim: &Aim, rooms: [f64; 2], workers: &dyn Workers) -> Option<Evaluation> {
         let improved = self.improved(near, aim);
-        improved.iter().find_map(|answer| self.held_on_fine_grid(answer, rooms))
+        let mut held = improved.iter();
+        held.find_map(|answer| self.held_on_fine_grid(answer, rooms, workers))
     }
 
     /// Evaluates an optimum on the fine grid, with more slack where it does not hold there; `None` if it does not.
-    fn held_on_fine_grid(&self, (problem, polished): &(LocalProblem, Polished), rooms: &[f64]) -> Option<Evaluation> {
-        let mut evaluations = rooms.iter().filter_map(|room| {
-            let design = self.for_fine_grid(problem, polished, 0.0, *room)?;
-            Some(self.model().evaluate(&design, GridChoice::Fine))
-        });
-        evaluations.find(Evaluation::is_feasible)
+    fn held_on_fine_grid(
+        &self,
+        (problem, polished): &(LocalProblem, Polished),
+        rooms: [f64; 2],
+        workers: &dyn Workers,
+    ) -> Option<Evaluation> {
+        self.held_with_room((problem, polished), rooms, 0.0, |design| {
+            self.model().evaluate_by(workers, design, GridChoice::Fine)
+        })
+    }
+
+    /// Evaluates an optimum for the fine grid by `evaluate` with the first of the slacks `rooms`, and with more, up to the last, where it
+    /// misses a requirement; `None` if it does not hold with that either. The radius of a disc is increased by a share of itself.
+    pub(super) fn held_with_room(
+        &self,
+        (problem, polished): (&LocalProblem, &Polished),
+        [first, most]: [f64; 2],
+        increase: f64,
+        evaluate: impl Fn(&Design) -> Evaluation,
+    ) -> Option<Evaluation> {
+        let mut room = first;
+        let mut is_estimated = false;
+        loop {
+            let design = self.for_fine_grid(problem, polished, increase, room);
+            let found = design.map(|design| evaluate(&design));
+            if let Some(found) = found.as_ref().filter(|found| found.is_feasible()) {
+                return Some(found.clone());
+            }
+            if room >= most {
+                return None;
+            }
+            let wanted = found
+                .and_then(|found| missed_at_poses(&found))
+                .map(|missed| room + MORE * missed);
+            // Where this is not enough either, what is missed is no measure of what is needed.
+            room = wanted.filter(|wanted| !is_estimated && *wanted < most).unwrap_or(most);
+            is_estimated = true;
+        }
     }
 
     /// Returns the value of the first objective, as it is minimised, at the optimum near a design that a search found; `None` if no optimum
@@ -194,8 +231,19 @@ impl DesignProblem {
             let own = own.map(|own| (local.problem, own.polished));
             return own.into_iter().collect();
         }
-        let answers = self.follow_entries((evaluation.design, home), own, &solve);
+        let answers = self.follow_entries((evaluation.design, home), own, 1, &solve);
         let answers = answers.into_iter().take(ANSWERS);
         answers.map(|answer| (answer.problem, answer.polished)).collect()
     }
+}
+
+/// Returns by how much an infeasible design misses a requirement of poses over its prescribed region, as a share of the threshold or of
+/// `R`; `None` if that is not known.
+fn missed_at_poses(evaluation: &Evaluation) -> Option<f64> {
+    let of_design = evaluation.limits.iter().filter(|result| match result.limit.quantity {
+        Quantity::Worst(scalar) => !scalar.bounds_poses(),
+        _ => true,
+    });
+    let missed = evaluation.violation - of_design.map(|result| (-result.margin).max(0.0)).sum::<f64>();
+    (missed > 0.0).then_some(missed)
 }

@@ -26,7 +26,7 @@ use kinefront_model::mechanism::{Architecture, Design};
 use kinefront_model::workspace::{Region, WorkspaceSpec};
 use kinefront_optimum::{LocalError, LocalProblem, LocalQuestion, Polished};
 
-use super::DesignProblem;
+use super::{DesignProblem, PoolWorkers};
 
 /// Why there is no local problem of a design.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -64,7 +64,7 @@ impl DesignProblem {
     /// # Errors
     /// [`LocalFault`] if an objective is not known, or is none of a local problem.
     pub fn local(&self, design: &Design, held: &[(Quantity, f64)]) -> Result<LocalDesign, LocalFault> {
-        self.local_of(&self.model().evaluate(design, GridChoice::Fine), held)
+        self.local_of(&self.model().evaluate_by(&PoolWorkers, design, GridChoice::Fine), held)
     }
 
     /// Returns the local problem of a design that was evaluated.

@@ -10,13 +10,17 @@ use kinefront_model::mechanism::Design;
 use kinefront_model::workspace::Region;
 use kinefront_optimum::{LocalProblem, LocalQuestion, Polished};
 
-use super::grid::{ANSWERS, ROOM, ROOMS};
+use super::grid::{ANSWERS, LARGEST_ROOM, ROOM};
 use super::{LocalAnswer, LocalDesign, LocalFault};
+use crate::prove::SLACK;
 use crate::settings::unknown_quantity;
-use crate::{DesignProblem, FrontMember, FrontProver};
+use crate::{DesignProblem, FrontMember, FrontProver, PoolWorkers};
 
 /// Part of a wish up to which the largest one that can be had is determined.
 const RESOLUTION: f64 = 1.0 / 64.0;
+
+/// Number of steps to the entries of lists and catalogues that are tried for the whole of a wish.
+const FAR: usize = 3;
 
 /// Relative increase of the radius of a disc, so that the radius that is proved is still the one that is wished for.
 const PROOF: f64 = CertifyOptions::TOLERANCE;
@@ -147,7 +151,7 @@ impl DesignProblem {
     /// [`WishFault`] if the design is infeasible, or if its question has no local problem.
     pub fn grant(&self, design: &Design, wish: &Wish) -> Result<WishOutcome, WishFault> {
         let model = self.model().clone().with_quantities(wish.quantities(self.model()));
-        let before = model.evaluate(design, GridChoice::Fine);
+        let before = model.evaluate_by(&PoolWorkers, design, GridChoice::Fine);
         if !before.is_feasible() {
             return Err(WishFault::Infeasible);
         }
@@ -175,28 +179,38 @@ impl DesignProblem {
             before: &before,
             conditions: &conditions,
         };
-        let own = target.nearest();
-        let mut fault = own.as_ref().err().cloned().map(WishFault::Local);
         let start = (local.design, local.home.unwrap_or_default());
-        let answers = self.follow_entries(start, own.ok(), &|other, home, is_whole| {
-            target.from(other, home, is_whole)
-        });
-        for answer in answers.iter().take(ANSWERS) {
-            match self.for_grid(answer, &model) {
-                Ok((wished, found)) => {
-                    let unmet = conditions.iter().filter(|condition| !holds(&found, condition));
-                    let unmet =
-                        unmet.filter_map(|condition| Some((*condition, found.quantities.get(condition.0.quantity)?)));
-                    return Ok(WishOutcome {
-                        unmet: unmet.collect(),
-                        changed_entries: self.changed_entries(design, &found.design),
-                        left_out: answer.problem.left_out(),
-                        found: wished.proved(found),
-                        was_true: false,
-                        before,
-                    });
-                }
-                Err(error) => fault = fault.or(Some(error)),
+        let mut fault = None;
+        let whole = |design: &Design, home: f64, _: bool| target.answer(1.0, design, home);
+        let most = |design: &Design, home: f64, is_whole: bool| {
+            let found = target.answer(1.0, design, home);
+            found.or_else(|| target.part(design, home).filter(|_| !is_whole))
+        };
+        // A part of a wish is of use only where no entries near those of the design satisfy the whole.
+        for is_whole in [true, false] {
+            let answers = match is_whole {
+                true => self.follow_entries(start, whole(&start.0, start.1, true), FAR, &whole),
+                false => self.follow_entries(start, target.part(&start.0, start.1), 1, &most),
+            };
+            for answer in answers.iter().take(ANSWERS) {
+                let (wished, found) = match self.for_grid(answer, &model) {
+                    Ok(held) => held,
+                    Err(error) => {
+                        fault = fault.or(Some(error));
+                        continue;
+                    }
+                };
+                let unmet = conditions.iter().filter(|condition| !holds(&found, condition));
+                let unmet =
+                    unmet.filter_map(|condition| Some((*condition, found.quantities.get(condition.0.quantity)?)));
+                return Ok(WishOutcome {
+                    unmet: unmet.collect(),
+                    changed_entries: self.changed_entries(design, &found.design),
+                    left_out: answer.problem.left_out(),
+                    found: wished.proved(found),
+                    was_true: false,
+                    before,
+                });
             }
         }
         Err(fault.unwrap_or(WishFault::Local(LocalFault::Infeasible(Box::new(*design)))))
@@ -213,18 +227,16 @@ impl DesignProblem {
             .model()
             .clone()
             .with_quantities(model.settings().quantities.iter());
-        let mut last = polished.design;
-        for room in ROOMS {
-            let Some(at_grid) = self.for_fine_grid(problem, polished, PROOF, room) else {
-                continue;
-            };
-            let found = evaluated.evaluate(&at_grid, GridChoice::Fine);
-            if found.is_feasible() {
-                return Ok((wished, found));
-            }
-            last = at_grid;
-        }
-        Err(WishFault::NotVerified(Box::new(last)))
+        let evaluate = |design: &Design| evaluated.evaluate_by(&PoolWorkers, design, GridChoice::Fine);
+        // The proof that members carry their loads takes long where no slack is left.
+        let thresholds = problem.question().settings.thresholds;
+        let room = match thresholds.iter().any(|(scalar, _)| scalar.is_of_loads()) {
+            true => SLACK,
+            false => ROOM,
+        };
+        let found = self.held_with_room((problem, polished), [room, LARGEST_ROOM], PROOF, evaluate);
+        let found = found.ok_or_else(|| WishFault::NotVerified(Box::new(polished.design)))?;
+        Ok((wished, found))
     }
 
     /// Proves a design that was evaluated on the fine grid.
@@ -236,8 +248,7 @@ impl DesignProblem {
             evaluation,
             certified: None,
         };
-        let goes_on = || true;
-        let prover = FrontProver::new(self, &goes_on);
+        let prover = FrontProver::at_once(self, &PoolWorkers);
         prover.prove(&member).reported().cloned().unwrap_or(member)
     }
 }
@@ -258,33 +269,24 @@ struct Target<'a> {
 }
 
 impl Target<'_> {
-    /// Returns the optimum that satisfies the wish with the listed dimensions of the design, or as large a part of it as possible.
-    fn nearest(&self) -> Result<LocalAnswer, LocalFault> {
-        let start = self.local.best()?;
-        let found = self.from(&start.design, start.home, false);
-        found.ok_or_else(|| LocalFault::Infeasible(Box::new(self.local.design)))
+    /// Returns the optimum near a design that satisfies a part of the wish; `None` if there is none.
+    fn answer(&self, part: f64, design: &Design, home: f64) -> Option<LocalAnswer> {
+        let problem = LocalProblem::new(self.question(part), design).ok()?;
+        let polished = problem.polish(design, home).filter(Polished::is_feasible)?;
+        Some(LocalAnswer {
+            polished,
+            problem,
+            part,
+        })
     }
 
-    /// Returns the optimum near a design that satisfies the wish, or, unless the whole of it is asked for, as large a part as possible.
-    fn from(&self, design: &Design, home: f64, is_whole: bool) -> Option<LocalAnswer> {
-        let at = |part: f64, design: &Design, home: f64| -> Option<LocalAnswer> {
-            let problem = LocalProblem::new(self.question(part), design).ok()?;
-            let polished = problem.polish(design, home).filter(Polished::is_feasible)?;
-            Some(LocalAnswer {
-                polished,
-                problem,
-                part,
-            })
-        };
-        let whole = at(1.0, design, home);
-        if whole.is_some() || is_whole {
-            return whole;
-        }
-        // The whole wish is approached from what the design has.
-        let (mut had, mut step) = (at(0.0, design, home)?, 0.25);
+    /// Returns the optimum near a design that satisfies as large a part of the wish as possible, which is approached from what the design
+    /// has.
+    fn part(&self, design: &Design, home: f64) -> Option<LocalAnswer> {
+        let (mut had, mut step) = (self.answer(0.0, design, home)?, 0.25);
         while step > RESOLUTION && had.part < 1.0 {
             let part = (had.part + step).min(1.0);
-            match at(part, &had.polished.design, had.polished.home) {
+            match self.answer(part, &had.polished.design, had.polished.home) {
                 Some(found) => had = found,
                 None => step *= 0.5,
             }

@@ -6,6 +6,7 @@ use super::lightest::{Ratios, SizingAccuracy, StiffnessRatios};
 use super::sizer::{Shape, Sizer};
 use crate::evaluation::GridChoice;
 use crate::mechanism::{Design, Leg};
+use crate::workers::OneWorker;
 use crate::workspace::{RegionPositions, directions, search_prescribed};
 
 /// How bars are sized at many poses.
@@ -128,7 +129,14 @@ impl<L: Leg> Sizer<'_, L> {
     fn best_home(&self, design: &Design, grid: GridChoice) -> (usize, f64) {
         let sampling = self.model.sampling(grid);
         let checker = self.model.checker::<L>(design);
-        let (found, margin) = search_prescribed(&checker, sampling, design.base_radius(), self.sectors == 1, None);
+        let (found, margin) = search_prescribed(
+            &checker,
+            sampling,
+            design.base_radius(),
+            self.sectors == 1,
+            None,
+            &OneWorker,
+        );
         (found.home.unwrap_or(0), margin)
     }
 

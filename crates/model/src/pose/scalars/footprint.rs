@@ -5,7 +5,8 @@ use crate::mechanism::Leg;
 use crate::pose::PoseChecker;
 use crate::spatial::LEGS;
 
-/// Computes the radius of the smallest circle about `O` that holds the base and all members, at several poses at once \[m\].
+/// Computes the radius of the smallest circle about `O` that holds all members and, unless it is left out, the base, at several poses at once
+/// \[m\].
 #[inline(always)]
 pub(super) fn lanes<L: Leg, V: Real>(checker: &PoseChecker<L>, position: Planar<V>, arms: &[Planar<V>; LEGS]) -> V {
     let legs = checker.leg_lanes(position, arms);
@@ -14,6 +15,9 @@ pub(super) fn lanes<L: Leg, V: Real>(checker: &PoseChecker<L>, position: Planar<
         .bodies
         .outermost(&checker.manipulator.legs, position, arms, &distals);
     let mut farthest = members;
+    if checker.leaves_out_base {
+        return farthest;
+    }
     for leg in &checker.manipulator.legs {
         farthest = position.x.splat(leg.frame().anchor_distance).larger(farthest);
     }
