@@ -1,4 +1,4 @@
-//! Small convex programs: quadratic and linear, with linear constraints, solved by an interior-point method.
+//! Small convex programs that need not be strictly convex, with linear constraints, solved by an interior-point method.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -22,15 +22,6 @@ pub(crate) struct ConvexProgram {
     pub at_least: Vec<(DVector<f64>, f64)>,
 }
 
-/// Where a program has its least value.
-#[derive(Debug, Clone)]
-pub(crate) struct ConvexSolution {
-    /// `x`.
-    pub x: DVector<f64>,
-    /// Multipliers of `C x ≥ d`, at least 0.
-    pub multipliers: Vec<f64>,
-}
-
 impl ConvexProgram {
     /// Creates a program without constraints in `count` variables, with the value 0.
     pub fn new(count: usize) -> Self {
@@ -44,22 +35,13 @@ impl ConvexProgram {
 
     /// Requires that a variable is at least a number.
     pub fn bound_below(&mut self, variable: usize, least: f64) {
-        self.bound(variable, 1.0, least);
-    }
-
-    /// Requires that a variable is at most a number.
-    pub fn bound_above(&mut self, variable: usize, most: f64) {
-        self.bound(variable, -1.0, -most);
-    }
-
-    fn bound(&mut self, variable: usize, sign: f64, least: f64) {
         let mut row = DVector::zeros(self.linear.len());
-        row[variable] = sign;
+        row[variable] = 1.0;
         self.at_least.push((row, least));
     }
 
-    /// Solves the program; `None` if it has no solution, or if none was found.
-    pub fn solve(&self) -> Option<ConvexSolution> {
+    /// Returns where the program has its least value; `None` if it has no solution, or if none was found.
+    pub fn solve(&self) -> Option<DVector<f64>> {
         let count = self.linear.len();
         let quadratic = sparse(count, count, |row, column| {
             if row <= column {
@@ -93,12 +75,7 @@ impl ConvexProgram {
             SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
         );
         let x = DVector::from_vec(solver.solution.x.clone());
-        let multipliers: Vec<f64> = solver.solution.z[self.equal.len()..]
-            .iter()
-            .map(|z| z.max(0.0))
-            .collect();
-        let is_finite = x.iter().chain(&multipliers).all(|number| number.is_finite());
-        (found && is_finite).then_some(ConvexSolution { x, multipliers })
+        (found && x.iter().all(|number| number.is_finite())).then_some(x)
     }
 }
 
@@ -123,17 +100,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_point_of_a_half_plane_has_the_multiplier_of_its_distance() {
+    fn the_nearest_point_of_a_half_plane_is_found() {
         // The point of x + y ≥ 2 that is nearest to the origin.
         let mut program = ConvexProgram::new(2);
         program.quadratic.fill_with_identity();
         program.at_least.push((DVector::from_vec(vec![1.0, 1.0]), 2.0));
         program.bound_below(0, -5.0);
         let found = program.solve().expect("the half plane is not empty");
-        assert!((found.x[0] - 1.0).abs() < 1e-10 && (found.x[1] - 1.0).abs() < 1e-10);
-        assert!((found.multipliers[0] - 1.0).abs() < 1e-9 && found.multipliers[1] < 1e-9);
-        program.bound_above(0, 0.5);
-        program.bound_above(1, 0.5);
+        assert!((found[0] - 1.0).abs() < 1e-10 && (found[1] - 1.0).abs() < 1e-10);
+        program.at_least.push((DVector::from_vec(vec![-1.0, -1.0]), -1.0));
         assert!(program.solve().is_none());
     }
 
@@ -145,6 +120,6 @@ mod tests {
         program.bound_below(0, 1.0);
         program.bound_below(1, 0.0);
         let found = program.solve().expect("the segment is not empty");
-        assert!((found.x[0] - 1.0).abs() < 1e-9 && (found.x[1] - 2.0).abs() < 1e-9);
+        assert!((found[0] - 1.0).abs() < 1e-9 && (found[1] - 2.0).abs() < 1e-9);
     }
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::convex::ConvexProgram;
 use super::multipliers::Multipliers;
+use super::nearest::QuadraticProgram;
 use super::place::Density;
 use super::polished::Polished;
 use super::problem::LocalProblem;
@@ -58,6 +58,9 @@ const LIGHTEST: f64 = 20.0;
 
 /// Largest weight of the violations.
 const HEAVIEST: f64 = 2e3;
+
+/// Curvature that the cost of a violation has, so that a step is unique.
+const BENT: f64 = 1e-3;
 
 /// Rounds without an improvement after which the search ends.
 const PATIENCE: usize = 10;
@@ -340,11 +343,12 @@ impl<'a> Exchange<'a> {
         }
         // The last variables are the largest violation of each kind.
         let kinds = self.kinds.len();
-        let mut program = ConvexProgram::new(count + kinds);
+        let mut program = QuadraticProgram::new(count + kinds);
         program
             .quadratic
             .view_mut((0, 0), (count, count))
             .copy_from(&self.hessian);
+        (count..count + kinds).for_each(|violation| program.quadratic[(violation, violation)] = BENT);
         program.linear.rows_mut(0, count).copy_from(gradient);
         program.linear.rows_mut(count, kinds).fill(self.weight);
         for (row, value) in values.iter().enumerate() {

@@ -10,6 +10,7 @@ mod exchange;
 mod finish;
 mod meeting;
 mod multipliers;
+mod nearest;
 mod parameter;
 mod place;
 mod polish;

@@ -125,7 +125,7 @@ impl Multipliers {
                 program.at_least.push((-row, -gradient[unknown] - STATIONARY));
             }
             (0..effects.len()).for_each(|multiplier| program.bound_below(multiplier, 0.0));
-            Some(dot(program.solve()?.x.iter(), effects))
+            Some(dot(program.solve()?.iter(), effects))
         };
         Some([end(1.0)?, end(-1.0)?])
     }
@@ -197,7 +197,6 @@ fn non_negative(columns: &DMatrix<f64>, gradient: &DVector<f64>) -> (Vec<f64>, f
         return (vec![0.0; count], gradient.amax());
     };
     let mut found: Vec<f64> = solution
-        .x
         .iter()
         .take(count)
         .map(|multiplier| multiplier.max(0.0))
