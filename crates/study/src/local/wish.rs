@@ -49,6 +49,12 @@ impl Condition {
         let bound = Bound::no_worse_than(value, quantity.entry().better);
         Self(QuantityLimit { quantity, bound })
     }
+
+    /// Returns whether an evaluated design satisfies the condition, but for rounding.
+    fn holds_for(&self, evaluation: &Evaluation) -> bool {
+        let value = evaluation.quantities.get(self.0.quantity);
+        value.is_some_and(|value| self.0.margin(value) >= -1e-6)
+    }
 }
 
 impl FromStr for Condition {
@@ -157,11 +163,7 @@ impl DesignProblem {
         }
         let kept = wish.keep.iter().filter_map(|quantity| kept(&before, *quantity));
         let conditions: Vec<Condition> = wish.conditions.iter().copied().chain(kept).collect();
-        let holds = |evaluation: &Evaluation, condition: &Condition| {
-            let value = evaluation.quantities.get(condition.0.quantity);
-            value.is_some_and(|value| condition.0.margin(value) >= -1e-6)
-        };
-        if conditions.iter().all(|condition| holds(&before, condition)) {
+        if conditions.iter().all(|condition| condition.holds_for(&before)) {
             let found = self.proved(before.clone());
             return Ok(WishOutcome {
                 found,
@@ -179,20 +181,10 @@ impl DesignProblem {
             before: &before,
             conditions: &conditions,
         };
-        let start = (local.design, local.home.unwrap_or_default());
         let mut fault = None;
-        let whole = |design: &Design, home: f64, _: bool| target.answer(1.0, design, home);
-        let most = |design: &Design, home: f64, is_whole: bool| {
-            let found = target.answer(1.0, design, home);
-            found.or_else(|| target.part(design, home).filter(|_| !is_whole))
-        };
         // A part of a wish is of use only where no entries near those of the design satisfy the whole.
         for is_whole in [true, false] {
-            let answers = match is_whole {
-                true => self.follow_entries(start, whole(&start.0, start.1, true), FAR, &whole),
-                false => self.follow_entries(start, target.part(&start.0, start.1), 1, &most),
-            };
-            for answer in answers.iter().take(ANSWERS) {
+            for answer in self.answers(&target, is_whole).iter().take(ANSWERS) {
                 let (wished, found) = match self.for_grid(answer, &model) {
                     Ok(held) => held,
                     Err(error) => {
@@ -200,7 +192,7 @@ impl DesignProblem {
                         continue;
                     }
                 };
-                let unmet = conditions.iter().filter(|condition| !holds(&found, condition));
+                let unmet = conditions.iter().filter(|condition| !condition.holds_for(&found));
                 let unmet =
                     unmet.filter_map(|condition| Some((*condition, found.quantities.get(condition.0.quantity)?)));
                 return Ok(WishOutcome {
@@ -214,6 +206,22 @@ impl DesignProblem {
             }
         }
         Err(fault.unwrap_or(WishFault::Local(LocalFault::Infeasible(Box::new(*design)))))
+    }
+
+    /// Returns optima with the entries of a design and with those that are better, the best first: those that satisfy the whole of a wish,
+    /// or as large a part of it as possible.
+    fn answers(&self, target: &Target, is_whole: bool) -> Vec<LocalAnswer> {
+        let local = target.local;
+        let (design, home) = (local.design, local.home.unwrap_or_default());
+        let whole = |design: &Design, home: f64, _: bool| target.answer(1.0, design, home);
+        let most = |design: &Design, home: f64, is_whole: bool| {
+            let found = target.answer(1.0, design, home);
+            found.or_else(|| target.part(design, home).filter(|_| !is_whole))
+        };
+        match is_whole {
+            true => self.follow_entries((design, home), whole(&design, home, true), FAR, &whole),
+            false => self.follow_entries((design, home), target.part(&design, home), 1, &most),
+        }
     }
 
     /// Returns the design of an answer as it holds on the fine grid, with the problem whose requirements the wish states.
