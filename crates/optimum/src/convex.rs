@@ -1,4 +1,4 @@
-//! Small convex programs that need not be strictly convex, with linear constraints, solved by an interior-point method.
+//! Small convex programs, with linear constraints, and their solution by an interior-point method, for those that are not strictly convex.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -35,12 +35,21 @@ impl ConvexProgram {
 
     /// Requires that a variable is at least a number.
     pub fn bound_below(&mut self, variable: usize, least: f64) {
+        self.bound(variable, 1.0, least);
+    }
+
+    /// Requires that a variable is at most a number.
+    pub fn bound_above(&mut self, variable: usize, most: f64) {
+        self.bound(variable, -1.0, -most);
+    }
+
+    fn bound(&mut self, variable: usize, sign: f64, least: f64) {
         let mut row = DVector::zeros(self.linear.len());
-        row[variable] = 1.0;
+        row[variable] = sign;
         self.at_least.push((row, least));
     }
 
-    /// Returns where the program has its least value; `None` if it has no solution, or if none was found.
+    /// Returns where a program that need not be strictly convex has its least value; `None` if it has no solution, or if none was found.
     pub fn solve(&self) -> Option<DVector<f64>> {
         let count = self.linear.len();
         let quadratic = sparse(count, count, |row, column| {
@@ -108,7 +117,8 @@ mod tests {
         program.bound_below(0, -5.0);
         let found = program.solve().expect("the half plane is not empty");
         assert!((found[0] - 1.0).abs() < 1e-10 && (found[1] - 1.0).abs() < 1e-10);
-        program.at_least.push((DVector::from_vec(vec![-1.0, -1.0]), -1.0));
+        program.bound_above(0, 0.5);
+        program.bound_above(1, 0.5);
         assert!(program.solve().is_none());
     }
 

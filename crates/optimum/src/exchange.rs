@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::convex::ConvexProgram;
 use super::multipliers::Multipliers;
-use super::nearest::QuadraticProgram;
 use super::place::Density;
 use super::polished::Polished;
 use super::problem::LocalProblem;
@@ -343,7 +343,7 @@ impl<'a> Exchange<'a> {
         }
         // The last variables are the largest violation of each kind.
         let kinds = self.kinds.len();
-        let mut program = QuadraticProgram::new(count + kinds);
+        let mut program = ConvexProgram::new(count + kinds);
         program
             .quadratic
             .view_mut((0, 0), (count, count))
@@ -363,7 +363,7 @@ impl<'a> Exchange<'a> {
             program.bound_above(unknown, upper.min(trust));
         }
         (count..count + kinds).for_each(|violation| program.bound_below(violation, 0.0));
-        let solution = program.solve()?;
+        let solution = program.solve_strictly()?;
         let change: DVector<f64> = solution.x.rows(0, count).into_owned();
         let multipliers = solution.multipliers[..values.len()].to_vec();
         let left: f64 = solution

@@ -2,9 +2,11 @@
 //!
 //! In the coordinates `z = Lᵀx` with the Cholesky factor `L` of the Hessian, the answer is the point of a polyhedron that is nearest to a
 //! given one. The method starts there and adds violated constraints one by one. A search takes hundreds of steps, each with a dozen
-//! variables: an interior-point method for large sparse programs takes twenty times as long.
+//! variables, of which an interior-point method for large sparse programs would take most of the time.
 
 use nalgebra::{DMatrix, DVector};
+
+use super::convex::ConvexProgram;
 
 /// A violation that is rounding, as a share of the lengths that are compared.
 const ROUNDING: f64 = 1e-13;
@@ -18,17 +20,6 @@ const SHIFTS: usize = 4;
 /// Number of changes of the active constraints, as a multiple of the number of all, after which the method has failed.
 const CHANGES: usize = 8;
 
-/// A program `min ½ xᵀPx + qᵀx` with `C x ≥ d`, and `P` positive definite.
-#[derive(Debug, Clone)]
-pub(crate) struct QuadraticProgram {
-    /// `P`, symmetric.
-    pub quadratic: DMatrix<f64>,
-    /// `q`.
-    pub linear: DVector<f64>,
-    /// Rows of `C` with the elements of `d`.
-    pub at_least: Vec<(DVector<f64>, f64)>,
-}
-
 /// Where a program has its least value.
 #[derive(Debug, Clone)]
 pub(crate) struct QuadraticSolution {
@@ -38,35 +29,11 @@ pub(crate) struct QuadraticSolution {
     pub multipliers: Vec<f64>,
 }
 
-impl QuadraticProgram {
-    /// Creates a program without constraints in `count` variables, with the value 0; its Hessian is still to be filled.
-    pub fn new(count: usize) -> Self {
-        Self {
-            quadratic: DMatrix::zeros(count, count),
-            linear: DVector::zeros(count),
-            at_least: Vec::new(),
-        }
-    }
-
-    /// Requires that a variable is at least a number.
-    pub fn bound_below(&mut self, variable: usize, least: f64) {
-        self.bound(variable, 1.0, least);
-    }
-
-    /// Requires that a variable is at most a number.
-    pub fn bound_above(&mut self, variable: usize, most: f64) {
-        self.bound(variable, -1.0, -most);
-    }
-
-    fn bound(&mut self, variable: usize, sign: f64, least: f64) {
-        let mut row = DVector::zeros(self.linear.len());
-        row[variable] = sign;
-        self.at_least.push((row, least));
-    }
-
-    /// Solves the program; `None` if no point satisfies the constraints, if the Hessian is not positive definite, or if rounding prevents
-    /// an answer.
-    pub fn solve(&self) -> Option<QuadraticSolution> {
+impl ConvexProgram {
+    /// Solves a strictly convex program without equations; `None` if no point satisfies the constraints, if `P` is not positive definite, or
+    /// if rounding prevents an answer.
+    pub fn solve_strictly(&self) -> Option<QuadraticSolution> {
+        debug_assert!(self.equal.is_empty(), "an equation is left out");
         let factor = self.factor()?;
         let normals: Option<Vec<DVector<f64>>> = self
             .at_least
@@ -87,10 +54,8 @@ impl QuadraticProgram {
         let is_finite = x.iter().chain(&multipliers).all(|number| number.is_finite());
         is_finite.then_some(QuadraticSolution { x, multipliers })
     }
-}
 
-impl QuadraticProgram {
-    /// Returns the Cholesky factor of the Hessian, to which as much is added as rounding has taken from its least eigenvalue.
+    /// Returns the Cholesky factor of `P`, to which as much is added as rounding has taken from its least eigenvalue.
     fn factor(&self) -> Option<DMatrix<f64>> {
         let largest = self.quadratic.diagonal().amax();
         let mut added = 0.0;
@@ -108,6 +73,7 @@ impl QuadraticProgram {
 /// The search for the point of `nᵢᵀz ≥ dᵢ` that is nearest to a start.
 struct Projection<'a> {
     normals: &'a [DVector<f64>],
+    lengths: Vec<f64>,
     sides: &'a [f64],
     start: DVector<f64>,
     z: DVector<f64>,
@@ -123,6 +89,7 @@ impl<'a> Projection<'a> {
     fn new(normals: &'a [DVector<f64>], sides: &'a [f64], start: DVector<f64>) -> Self {
         Self {
             normals,
+            lengths: normals.iter().map(|normal| normal.norm()).collect(),
             sides,
             z: start.clone(),
             start,
@@ -144,7 +111,7 @@ impl<'a> Projection<'a> {
                 let (across, parts) = self.split(normal);
                 let rates = self.solve_triangle(&parts);
                 let room = across.norm_squared();
-                let is_dependent = room.sqrt() <= DEPENDENT * normal.norm();
+                let is_dependent = room.sqrt() <= DEPENDENT * self.lengths[next];
                 let missing = self.sides[next] - normal.dot(&self.z);
                 let whole = if is_dependent { f64::INFINITY } else { missing / room };
                 let (blocking, part) = self.blocking(&rates);
@@ -171,12 +138,12 @@ impl<'a> Projection<'a> {
 
     /// Returns the constraint that is violated most, as a distance.
     fn most_violated(&self) -> Option<usize> {
+        let distance_of_z = self.z.norm();
         let mut most: Option<(f64, usize)> = None;
         for (place, (normal, side)) in self.normals.iter().zip(self.sides).enumerate() {
-            let length = normal.norm();
-            let allowed = ROUNDING * (side.abs() + length * self.z.norm()).max(length * f64::MIN_POSITIVE);
+            let length = self.lengths[place];
             let missing = side - normal.dot(&self.z);
-            if missing > allowed && !self.active.contains(&place) {
+            if missing > ROUNDING * (side.abs() + length * distance_of_z) && !self.active.contains(&place) {
                 let distance = if length > 0.0 { missing / length } else { f64::INFINITY };
                 if most.is_none_or(|(largest, _)| distance > largest) {
                     most = Some((distance, place));
@@ -277,21 +244,20 @@ impl<'a> Projection<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::convex::ConvexProgram;
 
     #[test]
     fn the_nearest_point_of_a_half_plane_has_the_multiplier_of_its_distance() {
         // The point of x + y ≥ 2 that is nearest to the origin.
-        let mut program = QuadraticProgram::new(2);
+        let mut program = ConvexProgram::new(2);
         program.quadratic.fill_with_identity();
         program.at_least.push((DVector::from_vec(vec![1.0, 1.0]), 2.0));
         program.bound_below(0, -5.0);
-        let found = program.solve().expect("the half plane is not empty");
+        let found = program.solve_strictly().expect("the half plane is not empty");
         assert!((found.x[0] - 1.0).abs() < 1e-14 && (found.x[1] - 1.0).abs() < 1e-14);
         assert!((found.multipliers[0] - 1.0).abs() < 1e-14 && found.multipliers[1] == 0.0);
         program.bound_above(0, 0.5);
         program.bound_above(1, 0.5);
-        assert!(program.solve().is_none());
+        assert!(program.solve_strictly().is_none());
     }
 
     /// Programs like those of a step, with constraints that occur twice and with more active ones than variables, have the solution of an
@@ -309,7 +275,7 @@ mod tests {
         for case in 0..300 {
             let count = 2 + case % 9;
             let square = DMatrix::from_fn(count, count, |_, _| number());
-            let mut program = QuadraticProgram::new(count);
+            let mut program = ConvexProgram::new(count);
             program.quadratic = &square * square.transpose() + DMatrix::identity(count, count) * 0.01;
             program.linear = DVector::from_fn(count, |_, _| number());
             let point = DVector::from_fn(count, |_, _| 0.5 * number());
@@ -330,11 +296,7 @@ mod tests {
                 program.bound_below(variable, -0.5);
                 program.bound_above(variable, 0.5);
             }
-            let mut reference = ConvexProgram::new(count);
-            reference.quadratic.clone_from(&program.quadratic);
-            reference.linear.clone_from(&program.linear);
-            reference.at_least.clone_from(&program.at_least);
-            match (program.solve(), reference.solve()) {
+            match (program.solve_strictly(), program.solve()) {
                 (Some(found), Some(expected)) => {
                     solved += 1;
                     assert!((&found.x - &expected).amax() < 1e-7, "case {case}");

@@ -118,16 +118,15 @@ impl DesignProblem {
         let mut is_estimated = false;
         loop {
             let design = self.for_fine_grid(problem, polished, increase, room);
-            let found = design.map(|design| evaluate(&design));
-            if let Some(found) = found.as_ref().filter(|found| found.is_feasible()) {
-                return Some(found.clone());
-            }
+            let missed = match design.map(|design| evaluate(&design)) {
+                Some(found) if found.is_feasible() => return Some(found),
+                Some(found) => missed_at_poses(&found),
+                None => None,
+            };
             if room >= most {
                 return None;
             }
-            let wanted = found
-                .and_then(|found| missed_at_poses(&found))
-                .map(|missed| room + MORE * missed);
+            let wanted = missed.map(|missed| room + MORE * missed);
             // Where this is not enough either, what is missed is no measure of what is needed.
             room = wanted.filter(|wanted| !is_estimated && *wanted < most).unwrap_or(most);
             is_estimated = true;
