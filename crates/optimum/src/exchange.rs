@@ -65,6 +65,9 @@ const BENT: f64 = 1e-3;
 /// Rounds without an improvement after which the search ends.
 const PATIENCE: usize = 10;
 
+/// The same where some slack is asked for: many designs are looked for then, and another one takes the place of one that does not exist.
+const QUICK_PATIENCE: usize = 5;
+
 /// Critical poses with more slack than this are forgotten.
 const SLACK: f64 = 0.25;
 
@@ -125,6 +128,7 @@ impl<'a> Exchange<'a> {
     pub fn run(mut self) -> Option<Polished> {
         let mut survey = self.survey(Density::Coarse)?;
         let slack = self.problem.question().slack;
+        let patience = if slack > 0.0 { QUICK_PATIENCE } else { PATIENCE };
         let mut renewed = 0;
         let mut span = TRUST;
         let (mut least_missed, mut improved) = (f64::INFINITY, 0);
@@ -154,7 +158,7 @@ impl<'a> Exchange<'a> {
             if missed < 0.7 * least_missed {
                 (least_missed, improved) = (missed, round);
             }
-            let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && round > improved + PATIENCE;
+            let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && round > improved + patience;
             // The approximation of the curvature may have grown so steep that steps stay short.
             if missed <= SLOW && moved <= SLOW && renewed < RENEWALS {
                 let found = Multipliers::new(self.problem, &self.unknowns, &survey);

@@ -24,6 +24,12 @@ const ALSO: f64 = 0.02;
 /// Accuracy of a place.
 const ACCURACY: f64 = 1e-8;
 
+/// The same where some slack is asked for and the values around the place differ by no more than [`FLAT`].
+const ROUGH_ACCURACY: f64 = 1e-5;
+
+/// Difference of values that is less than the slack which is asked for.
+const FLAT: f64 = 1e-10;
+
 /// Step from which the place of a minimum is refined, for both coordinates and the orientation.
 const FIRST_STEP: f64 = 0.08;
 
@@ -135,17 +141,26 @@ impl LocalProblem {
             slack: self.value(prepared, requirement, &from),
         };
         let freedoms = Area::freedoms(from.spot);
+        let rough = if self.question().slack > 0.0 {
+            ROUGH_ACCURACY
+        } else {
+            0.0
+        };
         let mut step = first;
         let mut left = PATIENCE;
         while step > ACCURACY && left > 0 {
             left -= 1;
             let mut is_lower = false;
+            let mut is_flat = step <= rough;
             for freedom in 0..=freedoms {
+                let (mut rise, mut is_at_end) = (0.0f64, false);
                 for way in [-step, step] {
                     let Some(place) = moved(prepared, best.place, freedom, freedoms, way) else {
+                        is_at_end = true;
                         continue;
                     };
                     let slack = self.value(prepared, requirement, &place);
+                    rise = rise.max(slack - best.slack);
                     // Where the requirement has no value, another one is missed.
                     if slack < best.slack && slack > NOWHERE {
                         best = Critical {
@@ -156,8 +171,12 @@ impl LocalProblem {
                         is_lower = true;
                     }
                 }
+                is_flat &= is_at_end || rise <= FLAT;
             }
             if !is_lower {
+                if is_flat {
+                    break;
+                }
                 step *= 0.5;
             }
         }
