@@ -497,7 +497,7 @@ fn hostile_folders_are_survived() {
     let results = folder.path().join("results");
     fs::create_dir(&results).expect("a folder");
     let victim = out.join("victim");
-    for number in sample(0..count, 15) {
+    for number in sample(0..count, 8) {
         let hostile = out.join(format!("run{number}"));
         let result = |name: &str| results.join(format!("{name}{number}"));
         let commands: [(&str, Vec<PathBuf>); 7] = [

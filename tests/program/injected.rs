@@ -307,7 +307,7 @@ fn little_memory_ends_a_command_in_good_order() {
         .iter()
         .filter(|scenario| scenario.name != "report" || is_thorough());
     for scenario in scenarios {
-        for step in sample(0..repetitions(24, 60), 8) {
+        for step in sample(0..repetitions(24, 60), 5) {
             let mut arguments = ground.prepare(scenario);
             // Recordings need most of the memory.
             arguments.retain(|argument| argument != Path::new("--no-recording"));

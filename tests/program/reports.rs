@@ -34,7 +34,7 @@ fn a_page_holds_everything_and_loads_nothing() {
     let folder = folder();
     let (run, out) = (folder.path().join("run"), folder.path().join("page"));
     optimize(&small_study(folder.path()), &run, &[]);
-    report(&[&run], &out, &["--sensitivity", "120"]).success().stdout("");
+    report(&[&run], &out, &["--sensitivity", "60"]).success().stdout("");
     let again = folder.path().join("again");
     kinefront()
         .arg("report")
@@ -124,7 +124,7 @@ fn a_page_holds_everything_and_loads_nothing() {
             );
         }
     }
-    assert!(page.contains("kinefront report run --sensitivity 120"));
+    assert!(page.contains("kinefront report run --sensitivity 60"));
     assert!(page.contains("3 other random seeds") && page.contains("K_act × 10"));
     // The page does not reveal the path of the folder.
     assert!(!page.contains(&folder.path().display().to_string()));

@@ -64,6 +64,8 @@ impl DesignProblem {
         match better.next() {
             // It may be worse in the first objective, because it holds the others between the poses of the grid, too.
             Some(better) if better.objectives.len() > 1 => better,
+            // On the fine grid, the design itself is hardly ever better than it was on the reference grid, and takes long to size.
+            Some(better) if better.objectives[0] <= found.objectives[0] => better,
             Some(better) => {
                 let verified = self.verify(design);
                 let is_lighter = verified.is_feasible() && verified.objectives[0] < better.objectives[0];
