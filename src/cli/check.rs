@@ -32,20 +32,7 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
     let inspection = inspect(path)?;
     let mut out = std::io::stdout().lock();
     if inspection.findings.is_empty() && !inspection.folder.is_verifiable() {
-        let count = inspection.designs.as_ref().map_or(0, Vec::len);
-        return Err(Failure::Runtime(miette!(
-            help = format!(
-                "`kinefront optimize --resume {} --accept-unverified` completes the run with these designs",
-                path.display()
-            ),
-            "{} cannot be verified: its {count} designs follow from the study, but no file states their number and their \
-             checksum ({}), so lost rows would go unnoticed",
-            path.display(),
-            match inspection.folder.report() {
-                Some(_) => "run.json has no `files`",
-                None => "run.json and progress.json are missing",
-            }
-        )));
+        return Err(unverifiable(path, &inspection));
     }
     if inspection.findings.is_empty() {
         if !arguments.quiet {
@@ -91,6 +78,24 @@ pub fn run(arguments: &CheckArguments) -> Result<Ending, Failure> {
         writeln!(std::io::stdout(), "repaired; {}", soundness(path, &again))?;
     }
     Ok(Ending::Done)
+}
+
+/// Returns the failure of a run folder in which lost rows would not be noticed.
+fn unverifiable(path: &Path, inspection: &Inspection) -> Failure {
+    let count = inspection.designs.as_ref().map_or(0, Vec::len);
+    Failure::Runtime(miette!(
+        help = format!(
+            "`kinefront optimize --resume {} --accept-unverified` completes the run with these designs",
+            path.display()
+        ),
+        "{} cannot be verified: its {count} designs follow from the study, but no file states their number and their \
+         checksum ({}), so lost rows would go unnoticed",
+        path.display(),
+        match inspection.folder.report() {
+            Some(_) => "run.json has no `files`",
+            None => "run.json and progress.json are missing",
+        }
+    ))
 }
 
 fn soundness(path: &Path, inspection: &Inspection) -> String {

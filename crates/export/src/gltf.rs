@@ -15,7 +15,7 @@ use super::format::{AnyError, Format};
 use super::prepared::Prepared;
 use kinefront_model::spatial::unit;
 use kinefront_scene::palette;
-use kinefront_scene::{Frame, Mesh, Part, Solid, linkage};
+use kinefront_scene::{Frame, Mesh, Part, RegularCylinder, Solid, linkage};
 
 pub(super) const FORMAT: Format = Format {
     key: "gltf",
@@ -54,18 +54,7 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         nodes.push(file.node("base", mesh));
     }
     if let Some(cylinder) = subject.cylinder {
-        let rim: Vec<DVec3> = match &subject.corners {
-            Some(corners) => corners
-                .iter()
-                .chain(corners.first())
-                .map(|corner| corner.extend(0.0))
-                .collect(),
-            None => (0..=CIRCLE)
-                .map(|k| unit(2.0 * std::f64::consts::PI * k as f64 / CIRCLE as f64))
-                .map(|direction| (cylinder.centre + direction * cylinder.radius).extend(0.0))
-                .collect(),
-        };
-        let line = file.line(&rim, Part::Workspace);
+        let line = file.line(&rim(subject, cylinder), Part::Workspace);
         if let Some(mesh) = file.mesh("regular_workspace", vec![line]) {
             nodes.push(file.node("regular_workspace", mesh));
         }
@@ -102,6 +91,21 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         ..json::Asset::default()
     };
     file.finish()
+}
+
+/// Returns the closed outline of the regular workspace.
+fn rim(subject: &Prepared, cylinder: RegularCylinder) -> Vec<DVec3> {
+    match &subject.corners {
+        Some(corners) => corners
+            .iter()
+            .chain(corners.first())
+            .map(|corner| corner.extend(0.0))
+            .collect(),
+        None => (0..=CIRCLE)
+            .map(|k| unit(2.0 * std::f64::consts::PI * k as f64 / CIRCLE as f64))
+            .map(|direction| (cylinder.centre + direction * cylinder.radius).extend(0.0))
+            .collect(),
+    }
 }
 
 fn translation(frame: &Frame) -> [f32; 3] {

@@ -65,7 +65,7 @@ const BENT: f64 = 1e-3;
 /// Rounds without an improvement after which the search ends.
 const PATIENCE: usize = 10;
 
-/// The same where some slack is asked for: many designs are looked for then, and another one takes the place of one that does not exist.
+/// The same for the designs of a front: many are looked for, and another one takes the place of one that does not exist.
 const QUICK_PATIENCE: usize = 5;
 
 /// Critical poses with more slack than this are forgotten.
@@ -128,7 +128,8 @@ impl<'a> Exchange<'a> {
     pub fn run(mut self) -> Option<Polished> {
         let mut survey = self.survey(Density::Coarse)?;
         let slack = self.problem.question().slack;
-        let patience = if slack > 0.0 { QUICK_PATIENCE } else { PATIENCE };
+        let is_of_front = slack > 0.0 && self.problem.question().settings.objectives.len() > 1;
+        let patience = if is_of_front { QUICK_PATIENCE } else { PATIENCE };
         let mut renewed = 0;
         let mut span = TRUST;
         let (mut least_missed, mut improved) = (f64::INFINITY, 0);

@@ -140,6 +140,31 @@ fn filter(ui: &mut Ui, session: &mut Session) {
     let mut edited: Filter = session.document().filter.clone();
     ui.checkbox(&mut edited.feasible_only, "feasible only")
         .on_hover_text("dims designs that are not feasible in all panels (F)");
+    ranges(ui, &mut edited);
+    egui::ComboBox::from_id_salt("add range")
+        .selected_text("add a range")
+        .show_ui(ui, |ui| add_range(ui, session, &mut edited));
+    if edited != session.document().filter {
+        session.drag("filter", |document| document.filter = edited);
+    }
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Clear").clicked() {
+            session.edit(|document| document.filter = Filter::default());
+        }
+        if ui.button("Copy filter").clicked() {
+            ui.ctx().copy_text(session.document().filter.to_text());
+        }
+        if ui.button("Save filter…").clicked() {
+            session.request_file(Purpose::SaveFilter);
+        }
+        if ui.button("Open filter…").clicked() {
+            session.request_file(Purpose::OpenFilter);
+        }
+    });
+}
+
+/// The ranges of a filter, each with its ends and a button that removes it.
+fn ranges(ui: &mut Ui, edited: &mut Filter) {
     let keys: Vec<String> = edited.ranges.keys().cloned().collect();
     for key in keys {
         let Some(quantity) = Column::find_quantity(&key) else {
@@ -166,41 +191,22 @@ fn filter(ui: &mut Ui, session: &mut Session) {
             }
         });
     }
-    egui::ComboBox::from_id_salt("add range")
-        .selected_text("add a range")
-        .show_ui(ui, |ui| {
-            for quantity in Column::quantities(session.study().named_quantities()) {
-                if !edited.ranges.contains_key(&*quantity.name())
-                    && ui.selectable_label(false, quantity.title()).clicked()
-                {
-                    let column = session.store().column(quantity);
-                    let range = column
-                        .iter()
-                        .filter(|value| value.is_finite())
-                        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
-                            [low.min(value), high.max(value)]
-                        });
-                    edited.set_range(quantity, Some(if range[0] <= range[1] { range } else { [0.0, 1.0] }));
-                }
-            }
-        });
-    if edited != session.document().filter {
-        session.drag("filter", |document| document.filter = edited);
+}
+
+/// The quantities that have no range yet; one that is clicked gets that of all designs.
+fn add_range(ui: &mut Ui, session: &Session, edited: &mut Filter) {
+    for quantity in Column::quantities(session.study().named_quantities()) {
+        if !edited.ranges.contains_key(&*quantity.name()) && ui.selectable_label(false, quantity.title()).clicked() {
+            let column = session.store().column(quantity);
+            let range = column
+                .iter()
+                .filter(|value| value.is_finite())
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+                    [low.min(value), high.max(value)]
+                });
+            edited.set_range(quantity, Some(if range[0] <= range[1] { range } else { [0.0, 1.0] }));
+        }
     }
-    ui.horizontal_wrapped(|ui| {
-        if ui.button("Clear").clicked() {
-            session.edit(|document| document.filter = Filter::default());
-        }
-        if ui.button("Copy filter").clicked() {
-            ui.ctx().copy_text(session.document().filter.to_text());
-        }
-        if ui.button("Save filter…").clicked() {
-            session.request_file(Purpose::SaveFilter);
-        }
-        if ui.button("Open filter…").clicked() {
-            session.request_file(Purpose::OpenFilter);
-        }
-    });
 }
 
 fn kept(ui: &mut Ui, session: &mut Session) {

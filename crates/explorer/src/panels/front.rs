@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use egui::{Align, Button, Label, RichText, Sense, Ui, WidgetInfo, WidgetType};
 use egui_extras::{TableBuilder, TableRow};
 use kinefront_scene::text;
-use kinefront_study::{Column, Study};
+use kinefront_study::{CertifiedWorkspace, Column, Study};
 
 use self::order::{Listing, Order, SortKey, active};
 use crate::{DesignOrigin, FrontEntry, Session, theme};
@@ -277,17 +277,7 @@ fn draw_row(
     let document = session.document();
     row.set_selected(state.selected);
     row.col(|ui| {
-        let star = if document.stars.contains(&entry.id) {
-            "★"
-        } else {
-            "☆"
-        };
-        let button = ui.add(Button::new(star).frame(false));
-        button.widget_info(|| {
-            let is_starred = document.stars.contains(&entry.id);
-            WidgetInfo::selected(WidgetType::Checkbox, true, is_starred, format!("star #{}", entry.id))
-        });
-        if button.clicked() {
+        if is_star_clicked(ui, entry.id, document.stars.contains(&entry.id)) {
             clicked.star = Some(entry.id);
         }
     });
@@ -312,21 +302,7 @@ fn draw_row(
     }
     row.col(|ui| {
         if let Some(certified) = &entry.certified {
-            let color = if certified.is_proved {
-                theme::good(ui)
-            } else {
-                theme::active(ui)
-            };
-            let upper = certified.upper.map_or("∞".to_owned(), |upper| format!("{upper:.4}"));
-            let words = if certified.is_of_region {
-                certified.state().to_owned()
-            } else {
-                format!("{} [{:.4}, {upper}]", certified.state(), certified.lower)
-            };
-            let words = RichText::new(words);
-            let words = if state.selected { words } else { words.color(color) };
-            ui.add(Label::new(words).selectable(false))
-                .on_hover_text(certified.to_string());
+            draw_proof(ui, certified, state);
         }
     });
     row.col(|ui| drop(ui.add(Label::new(active(entry)).selectable(false))));
@@ -337,6 +313,33 @@ fn draw_row(
     if row.response().clicked() {
         clicked.design = Some(entry.id);
     }
+}
+
+/// Draws the star of a design; returns whether it was clicked.
+fn is_star_clicked(ui: &mut Ui, id: usize, is_starred: bool) -> bool {
+    let star = if is_starred { "★" } else { "☆" };
+    let button = ui.add(Button::new(star).frame(false));
+    button.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, is_starred, format!("star #{id}")));
+    button.clicked()
+}
+
+/// Draws whether the workspace of a design is proved, and between which radii it ends.
+fn draw_proof(ui: &mut Ui, certified: &CertifiedWorkspace, state: RowState) {
+    let color = if certified.is_proved {
+        theme::good(ui)
+    } else {
+        theme::active(ui)
+    };
+    let upper = certified.upper.map_or("∞".to_owned(), |upper| format!("{upper:.4}"));
+    let words = if certified.is_of_region {
+        certified.state().to_owned()
+    } else {
+        format!("{} [{:.4}, {upper}]", certified.state(), certified.lower)
+    };
+    let words = RichText::new(words);
+    let words = if state.selected { words } else { words.color(color) };
+    ui.add(Label::new(words).selectable(false))
+        .on_hover_text(certified.to_string());
 }
 
 fn cell(entry: &FrontEntry, key: SortKey) -> String {

@@ -56,17 +56,7 @@ fn settings(ui: &mut Ui, session: &mut Session) {
     // All four settings in two rows need this width [points].
     let is_narrow = ui.available_width() < 400.0;
     Grid::new("run settings").num_columns(4).show(ui, |ui| {
-        let label = ui.label("algorithm");
-        ComboBox::from_id_salt("algorithm")
-            .selected_text(study.optimizer.algorithm.to_string())
-            .width(80.0)
-            .show_ui(ui, |ui| {
-                for name in AlgorithmName::ALL {
-                    ui.selectable_value(&mut study.optimizer.algorithm, name, name.to_string());
-                }
-            })
-            .response
-            .labelled_by(label.id);
+        algorithm(ui, &mut study.optimizer.algorithm);
         if is_narrow {
             ui.end_row();
         }
@@ -78,44 +68,57 @@ fn settings(ui: &mut Ui, session: &mut Session) {
         )
         .labelled_by(label.id);
         ui.end_row();
-        let label = ui.label("seed");
-        ui.horizontal(|ui| {
-            ui.add(
-                typed(ui, DragValue::new(&mut study.optimizer.seed))
-                    .range(0..=i64::MAX as u64)
-                    .speed(0.1),
-            )
-            .labelled_by(label.id);
-            if ui.button("random").on_hover_text("draws a random seed").clicked() {
-                study.optimizer.seed = random_seed();
-            }
-        });
+        seed(ui, &mut study.optimizer.seed);
         if is_narrow {
             ui.end_row();
         }
-        let label = ui.label("threads");
-        ui.horizontal(|ui| {
-            let cores = std::thread::available_parallelism().map_or(1, usize::from);
-            let mut threads = study.optimizer.threads.unwrap_or(cores);
-            let field = ui
-                .add(typed(ui, DragValue::new(&mut threads)).range(1..=1024).speed(0.05))
-                .labelled_by(label.id);
-            if field.changed() {
-                study.optimizer.threads = Some(threads);
-            }
-            let of = if study.optimizer.threads.is_none() {
-                "all cores"
-            } else {
-                "fixed"
-            };
-            ui.weak(of);
-        });
+        threads(ui, &mut study.optimizer.threads);
         ui.end_row();
     });
     session.editor_mut().change(|edited| *edited = study);
     for fault in session.editor().faults() {
         ui.colored_label(theme::bad(ui), format!("`{}` {}", fault.key, fault.message));
     }
+}
+
+fn algorithm(ui: &mut Ui, chosen: &mut AlgorithmName) {
+    let label = ui.label("algorithm");
+    ComboBox::from_id_salt("algorithm")
+        .selected_text(chosen.to_string())
+        .width(80.0)
+        .show_ui(ui, |ui| {
+            for name in AlgorithmName::ALL {
+                ui.selectable_value(chosen, name, name.to_string());
+            }
+        })
+        .response
+        .labelled_by(label.id);
+}
+
+fn seed(ui: &mut Ui, seed: &mut u64) {
+    let label = ui.label("seed");
+    ui.horizontal(|ui| {
+        ui.add(typed(ui, DragValue::new(seed)).range(0..=i64::MAX as u64).speed(0.1))
+            .labelled_by(label.id);
+        if ui.button("random").on_hover_text("draws a random seed").clicked() {
+            *seed = random_seed();
+        }
+    });
+}
+
+fn threads(ui: &mut Ui, stated: &mut Option<usize>) {
+    let label = ui.label("threads");
+    ui.horizontal(|ui| {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let mut threads = stated.unwrap_or(cores);
+        let field = ui
+            .add(typed(ui, DragValue::new(&mut threads)).range(1..=1024).speed(0.05))
+            .labelled_by(label.id);
+        if field.changed() {
+            *stated = Some(threads);
+        }
+        ui.weak(if stated.is_none() { "all cores" } else { "fixed" });
+    });
 }
 
 /// Returns a random seed of up to four digits, which is short enough to pass on to others.
@@ -126,47 +129,52 @@ fn random_seed() -> u64 {
     u64::from(u16::from_le_bytes(bytes)) % 10_000
 }
 
+/// The button for what a person would do next: start, pause or resume. `valid` says whether the study as edited can be searched.
+fn main_button(ui: &mut Ui, session: &mut Session, valid: bool) {
+    match session.phase() {
+        Phase::Searching => {
+            if ui
+                .button("⏸ Pause")
+                .on_hover_text("pauses after the current generation (Space)")
+                .clicked()
+            {
+                session.pause();
+            }
+        }
+        Phase::Paused => {
+            if ui
+                .button("▶ Resume")
+                .on_hover_text("resumes the search (Space)")
+                .clicked()
+            {
+                session.resume();
+            }
+        }
+        Phase::Concluding { .. } => {
+            ui.add_enabled(false, egui::Button::new("⏸ Pause"));
+        }
+        _ => {
+            let start = theme::primary("▶ Start");
+            let why = "the study has errors; see the panel Study";
+            if ui.add_enabled(valid, start).on_disabled_hover_text(why).clicked() {
+                session.start();
+            }
+            if session.continuable().is_some()
+                && ui
+                    .button("▶ Continue")
+                    .on_hover_text("continues the search in the folder of this run; a larger budget extends it")
+                    .clicked()
+            {
+                session.continue_run();
+            }
+        }
+    }
+}
+
 fn buttons(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         let valid = session.editor().text_fault().is_none();
-        match session.phase() {
-            Phase::Searching => {
-                if ui
-                    .button("⏸ Pause")
-                    .on_hover_text("pauses after the current generation (Space)")
-                    .clicked()
-                {
-                    session.pause();
-                }
-            }
-            Phase::Paused => {
-                if ui
-                    .button("▶ Resume")
-                    .on_hover_text("resumes the search (Space)")
-                    .clicked()
-                {
-                    session.resume();
-                }
-            }
-            Phase::Concluding { .. } => {
-                ui.add_enabled(false, egui::Button::new("⏸ Pause"));
-            }
-            _ => {
-                let start = theme::primary("▶ Start");
-                let why = "the study has errors; see the panel Study";
-                if ui.add_enabled(valid, start).on_disabled_hover_text(why).clicked() {
-                    session.start();
-                }
-                if session.continuable().is_some()
-                    && ui
-                        .button("▶ Continue")
-                        .on_hover_text("continues the search in the folder of this run; a larger budget extends it")
-                        .clicked()
-                {
-                    session.continue_run();
-                }
-            }
-        }
+        main_button(ui, session, valid);
         let can_step = matches!(session.phase(), Phase::Searching | Phase::Paused);
         if ui
             .add_enabled(can_step, egui::Button::new("⏭ Step"))

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{change, figures, optional};
-use crate::{Front, Report, Topic, Variation};
+use crate::{Front, Question, Report, Topic, Variation};
 use kinefront_model::mechanism::Architecture;
 use kinefront_scene::text::{number, short};
 use kinefront_study::Column;
@@ -108,32 +108,43 @@ fn of_references(report: &Report) -> Markup {
     }
 }
 
+/// Returns the best value of the second objective on a front.
+fn best_second(question: &Question, front: &Front) -> Option<f64> {
+    front.best(1).map(|best| question.value(1, best))
+}
+
+/// Returns the ratios of a front to that of the unchanged study: of the first objective at each level, then of the best second one.
+fn ratios(question: &Question, front: &Front, base: &Front, levels: &[f64]) -> Vec<Option<f64>> {
+    let cost = |&level: &f64| Some(question.cost_at(front, level)? / question.cost_at(base, level)?);
+    let of_best = best_second(question, front)
+        .zip(best_second(question, base))
+        .map(|(front, base)| front / base);
+    levels.iter().map(cost).chain([of_best]).collect()
+}
+
+/// Returns the range of the ratios of each column over all seeds; it includes 1, the result of the unchanged study.
+fn ranges(seeds: &[Vec<Option<f64>>], columns: usize) -> Vec<[f64; 2]> {
+    let range = |column: usize| {
+        let found = seeds.iter().filter_map(|ratios| ratios[column]);
+        found.fold([1.0, 1.0], |[low, high]: [f64; 2], ratio| {
+            [low.min(ratio), high.max(ratio)]
+        })
+    };
+    (0..columns).map(range).collect()
+}
+
 /// Tabulates how the front of an architecture changes with the assumptions.
 fn varied(report: &Report, variations: &[Variation], architecture: Architecture, base: &Front) -> Markup {
     let question = &report.question;
     let levels: Vec<f64> = question.levels(base).into_iter().skip(1).step_by(2).collect();
-    let best = |front: &Front| front.best(1).map(|best| question.value(1, best));
-    // Ratios to the unchanged study: of the first objective at each level, then of the best second one.
-    let ratios = |variation: &Variation| -> Option<Vec<Option<f64>>> {
-        let front = variation.of(architecture)?;
-        let cost = |&level: &f64| Some(question.cost_at(front, level)? / question.cost_at(base, level)?);
-        let of_best = best(front).zip(best(base)).map(|(front, base)| front / base);
-        Some(levels.iter().map(cost).chain([of_best]).collect())
-    };
+    let best = |front: &Front| best_second(question, front);
+    let ratios = |variation: &Variation| Some(ratios(question, variation.of(architecture)?, base, &levels));
     let seeds: Vec<Vec<Option<f64>>> = variations
         .iter()
         .filter(|other| other.is_chance())
         .filter_map(ratios)
         .collect();
-    // The range includes 1, the result of the unchanged study.
-    let chance: Vec<[f64; 2]> = (0..=levels.len())
-        .map(|column| {
-            let found = seeds.iter().filter_map(|ratios| ratios[column]);
-            found.fold([1.0, 1.0], |[low, high]: [f64; 2], ratio| {
-                [low.min(ratio), high.max(ratio)]
-            })
-        })
-        .collect();
+    let chance = ranges(&seeds, levels.len() + 1);
     html! {
         h3 { (architecture) }
         div.scroll { table {
