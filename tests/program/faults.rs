@@ -205,7 +205,7 @@ fn a_report_is_replaced_at_once() {
     let duration = since.elapsed();
     let whole = |text: &str| text.starts_with("<!DOCTYPE html>") && text.trim_end().ends_with("</html>");
     let stale = page.join("figures/of-another-report.svg");
-    for kill in sample(0..20_u32, 2) {
+    for kill in sample(0..20_u32, 4) {
         fs::write(&stale, "<svg/>").expect("a figure");
         let mut child = replace().spawn().expect("the program starts");
         std::thread::sleep(duration.mul_f64(f64::from(kill) / 20.0));

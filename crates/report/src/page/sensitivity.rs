@@ -114,7 +114,7 @@ fn best_second(question: &Question, front: &Front) -> Option<f64> {
 }
 
 /// Returns the ratios of a front to that of the unchanged study: of the first objective at each level, then of the best second one.
-fn ratios(question: &Question, front: &Front, base: &Front, levels: &[f64]) -> Vec<Option<f64>> {
+fn ratios_to(question: &Question, front: &Front, base: &Front, levels: &[f64]) -> Vec<Option<f64>> {
     let cost = |&level: &f64| Some(question.cost_at(front, level)? / question.cost_at(base, level)?);
     let of_best = best_second(question, front)
         .zip(best_second(question, base))
@@ -137,8 +137,8 @@ fn ranges(seeds: &[Vec<Option<f64>>], columns: usize) -> Vec<[f64; 2]> {
 fn varied(report: &Report, variations: &[Variation], architecture: Architecture, base: &Front) -> Markup {
     let question = &report.question;
     let levels: Vec<f64> = question.levels(base).into_iter().skip(1).step_by(2).collect();
-    let best = |front: &Front| best_second(question, front);
-    let ratios = |variation: &Variation| Some(ratios(question, variation.of(architecture)?, base, &levels));
+    let best = best_second(question, base);
+    let ratios = |variation: &Variation| Some(ratios_to(question, variation.of(architecture)?, base, &levels));
     let seeds: Vec<Vec<Option<f64>>> = variations
         .iter()
         .filter(|other| other.is_chance())
@@ -161,7 +161,7 @@ fn varied(report: &Report, variations: &[Variation], architecture: Architecture,
                 tr {
                     td { (AS_STATED) }
                     @for level in &levels { td.number { (question.cost_at(base, *level).map(number).unwrap_or_default()) (question.unit(0)) } }
-                    td.number { (best(base).map(number).unwrap_or_default()) (question.unit(1)) }
+                    td.number { (best.map(number).unwrap_or_default()) (question.unit(1)) }
                     td { }
                 }
                 @if !seeds.is_empty() {
