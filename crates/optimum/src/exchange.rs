@@ -47,6 +47,15 @@ const MISSED: f64 = 1e-10;
 /// An optimum misses no requirement by more than this.
 const HELD: f64 = 1e-8;
 
+/// Share of the slack that an optimum may miss.
+const ALLOWED: f64 = 0.5;
+
+/// Largest change of an unknown in a step that is no longer taken.
+const SHORTEST: f64 = 1e-10;
+
+/// The same where the requirements keep some slack, which the step would hardly use.
+const SHORT: f64 = 1e-6;
+
 /// Changes of the unknowns that are no longer followed.
 const STILL: f64 = 1e-7;
 
@@ -68,6 +77,9 @@ const PATIENCE: usize = 10;
 /// The same for the designs of a front: many are looked for, and another one takes the place of one that does not exist.
 const QUICK_PATIENCE: usize = 5;
 
+/// Share of what was missed before that is missed again where critical poses contradict each other.
+const CONTRADICTED: f64 = 0.9;
+
 /// Critical poses with more slack than this are forgotten.
 const SLACK: f64 = 0.25;
 
@@ -85,8 +97,51 @@ pub(crate) struct Exchange<'a> {
     weight: f64,
     /// Sum of the multipliers of the last step.
     pressure: f64,
+    /// What the critical poses that are known miss after the last step.
+    left: f64,
     /// The kinds of requirements that there are.
     kinds: Vec<Kind>,
+}
+
+/// How long a search goes on that comes no nearer to keeping its requirements.
+struct Patience {
+    /// Whether the search is for a design of a front.
+    is_quick: bool,
+    /// The least amount that was missed, and the rounds since then.
+    least: f64,
+    since: usize,
+    /// What the last round missed, and the rounds in which the poses that are known contradicted each other.
+    last: f64,
+    contradicted: usize,
+}
+
+impl Patience {
+    fn new(is_quick: bool) -> Self {
+        Self {
+            is_quick,
+            least: f64::INFINITY,
+            since: 0,
+            last: f64::INFINITY,
+            contradicted: 0,
+        }
+    }
+
+    /// Returns whether a search should end after a round that misses `missed`, of which `left` is missed at the poses that were known, with
+    /// violations of some weight.
+    fn is_spent(&mut self, missed: f64, left: f64, weight: f64) -> bool {
+        self.since += 1;
+        if missed < 0.7 * self.least {
+            (self.least, self.since) = (missed, 0);
+        }
+        // Poses that contradict each other, whatever their violations weigh, still do so when others are added.
+        let contradicts = weight >= HEAVIEST && left > 0.5 * missed && missed > CONTRADICTED * self.last;
+        self.contradicted = if contradicts { self.contradicted + 1 } else { 0 };
+        self.last = missed;
+        match self.is_quick {
+            true => self.since > QUICK_PATIENCE || self.contradicted >= 2,
+            false => self.since > PATIENCE,
+        }
+    }
 }
 
 /// A step of the quadratic programme.
@@ -121,6 +176,7 @@ impl<'a> Exchange<'a> {
             hessian: DMatrix::identity(count, count),
             weight: LIGHTEST,
             pressure: 0.0,
+            left: 0.0,
             kinds,
         }
     }
@@ -128,11 +184,9 @@ impl<'a> Exchange<'a> {
     pub fn run(mut self) -> Option<Polished> {
         let mut survey = self.survey(Density::Coarse)?;
         let slack = self.problem.question().slack;
-        let is_of_front = slack > 0.0 && self.problem.question().settings.objectives.len() > 1;
-        let patience = if is_of_front { QUICK_PATIENCE } else { PATIENCE };
+        let mut patience = Patience::new(slack > 0.0 && self.problem.question().settings.objectives.len() > 1);
         let mut renewed = 0;
         let mut span = TRUST;
-        let (mut least_missed, mut improved) = (f64::INFINITY, 0);
         for round in 0..ROUNDS {
             let known = missed(&survey);
             let (before, hessian, pressure) = (self.unknowns.clone(), self.hessian.clone(), self.pressure);
@@ -156,10 +210,8 @@ impl<'a> Exchange<'a> {
             } else {
                 (1.5 * span).min(WIDEST)
             };
-            if missed < 0.7 * least_missed {
-                (least_missed, improved) = (missed, round);
-            }
-            let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && round > improved + patience;
+            let is_spent = patience.is_spent(missed, self.left, self.weight);
+            let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && is_spent;
             // The approximation of the curvature may have grown so steep that steps stay short.
             if missed <= SLOW && moved <= SLOW && renewed < RENEWALS {
                 let found = Multipliers::new(self.problem, &self.unknowns, &survey);
@@ -169,7 +221,7 @@ impl<'a> Exchange<'a> {
                     continue;
                 }
             }
-            let is_enough = slack > 0.0 && missed <= 0.5 * slack && moved <= ENOUGH;
+            let is_enough = slack > 0.0 && missed <= ALLOWED * slack && moved <= ENOUGH;
             if missed <= MISSED && (moved <= STILL || round > 12) || is_enough || is_stuck {
                 break;
             }
@@ -191,7 +243,7 @@ impl<'a> Exchange<'a> {
             home: prepared.home,
             objective: problem.objective(&self.unknowns),
             missed,
-            allowed: HELD.max(0.5 * slack),
+            allowed: HELD.max(ALLOWED * slack),
             critical: survey,
             multipliers,
             unknowns: self.unknowns,
@@ -246,10 +298,9 @@ impl<'a> Exchange<'a> {
     fn descend(&mut self, first_trust: f64) {
         let problem = self.problem;
         let mut trust = first_trust;
-        // What is followed no further leaves less than the slack.
-        let smallest = if problem.question().slack > 0.0 { 1e-6 } else { 1e-10 };
         let mut values = problem.values_of(&self.unknowns, &self.critical);
         let (mut gradient, mut rows) = problem.derivatives(&self.unknowns, &self.critical);
+        self.left = largest_violation(&values);
         for _ in 0..STEPS {
             let Some(step) = self.step(&gradient, &rows, &values, trust) else {
                 trust *= 0.25;
@@ -259,7 +310,7 @@ impl<'a> Exchange<'a> {
                 continue;
             };
             let size = step.change.amax();
-            if size < smallest {
+            if size < self.smallest_step() {
                 return;
             }
             let merit = self.merit(&self.unknowns, &values);
@@ -304,6 +355,18 @@ impl<'a> Exchange<'a> {
                 trust = (2.0 * trust).min(2.0 * first_trust);
             }
             (self.unknowns, values, gradient, rows) = (changed, new_values, new_gradient, new_rows);
+            self.left = largest_violation(&values);
+        }
+    }
+
+    /// Returns the size of a step that is no longer taken. What it leaves of the minimised value is less than the slack, so that it is larger
+    /// once the requirements miss no more than the slack allows.
+    fn smallest_step(&self) -> f64 {
+        let slack = self.problem.question().slack;
+        if slack > 0.0 && self.left <= ALLOWED * slack {
+            SHORT
+        } else {
+            SHORTEST
         }
     }
 
@@ -427,4 +490,9 @@ impl<'a> Exchange<'a> {
         self.hessian += &turned * turned.transpose() / along - &image * image.transpose() / curvature;
         self.hessian = 0.5 * (&self.hessian + self.hessian.transpose());
     }
+}
+
+/// Returns the largest amount by which some values are negative.
+fn largest_violation(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(-value))
 }

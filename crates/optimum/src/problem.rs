@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use kinefront_model::evaluation::{Bound, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit};
+use kinefront_model::evaluation::{
+    Bound, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit, ScalarSet,
+};
 use kinefront_model::mechanism::{AnyLeg, Architecture, Design, DesignVariable, Leg};
 use kinefront_model::workspace::{GridError, WorkspaceSpec};
 
@@ -405,11 +407,11 @@ impl LocalProblem {
     pub(crate) fn prepare(&self, unknowns: &[f64]) -> Option<Prepared> {
         let design = self.design(unknowns)?;
         let legs = [0, 1, 2].map(|leg| AnyLeg::new(&design, &self.question.settings.legs, leg));
-        let mut evaluator = self.model.pose_evaluator(&design);
         let compared = self.requirements.iter();
-        for scalar in compared.filter_map(|requirement| requirement.scalar_in(&self.question.settings)) {
-            evaluator.ask_for(scalar);
-        }
+        let compared = compared.filter_map(|requirement| requirement.scalar_in(&self.question.settings));
+        let compared: ScalarSet = compared.collect();
+        let mut evaluator = self.model.pose_evaluator_of(&design, compared);
+        compared.iter().for_each(|scalar| evaluator.ask_for(scalar));
         evaluator.leave_out_base();
         let home = match self.home_place() {
             Some(place) => unknowns[place],

@@ -1,5 +1,7 @@
 //! By how much a requirement holds, as a number that is not negative where it does.
 
+use std::cell::OnceCell;
+
 use kinefront_model::evaluation::{Better, MarginUnit, ModelSettings, PoseScalar, PoseScalars, Quantity};
 use kinefront_model::mechanism::MemberKind;
 use nalgebra::{DMatrix, DVector};
@@ -206,7 +208,8 @@ impl LocalProblem {
         let count = unknowns.len();
         let mut gradient = DVector::zeros(count);
         let mut rows = DMatrix::zeros(critical.len(), count);
-        let here = self.values_of(unknowns, critical);
+        let here = OnceCell::new();
+        let here = |row: usize| here.get_or_init(|| self.values_of(unknowns, critical))[row];
         for unknown in 0..count {
             let moved = |step: f64| {
                 let mut moved = unknowns.to_vec();
@@ -221,8 +224,8 @@ impl LocalProblem {
                 // At the end of reach, a requirement has a value on one side alone.
                 rows[(row, unknown)] = match (*lower > NOWHERE, *upper > NOWHERE) {
                     (true, true) => (upper - lower) / width,
-                    (true, false) => (here[row] - lower) / DIFFERENCE,
-                    (false, true) => (upper - here[row]) / DIFFERENCE,
+                    (true, false) => (here(row) - lower) / DIFFERENCE,
+                    (false, true) => (upper - here(row)) / DIFFERENCE,
                     (false, false) => 0.0,
                 };
             }

@@ -290,6 +290,10 @@ impl Model {
 
     /// Prepares the design with its members in a stack.
     pub(super) fn checker_in<L: Leg>(&self, design: &Design, stack: &Stack) -> PoseChecker<L> {
+        self.checker_with(design, self.bodies_in(design, stack))
+    }
+
+    fn checker_with<L: Leg>(&self, design: &Design, bodies: Bodies) -> PoseChecker<L> {
         let manipulator = Manipulator::new(design, &self.settings.legs);
         let stiffness = self.stiffness(design);
         let thresholds = self.thresholds_of(design);
@@ -300,7 +304,7 @@ impl Model {
             stiffness,
             definition: self.settings.stiffness_definition,
             length: self.length(design, &manipulator),
-            bodies: self.bodies_in(design, stack),
+            bodies,
             base_radius: design.base_radius(),
             longest_lever: design.architecture().longest_lever(design),
             actuator: design.architecture().actuator(),
@@ -317,15 +321,36 @@ impl Model {
 
     /// Prepares the design for evaluation at many poses, whatever its legs are.
     pub fn pose_evaluator(&self, design: &Design) -> Box<dyn PoseEvaluator> {
-        with_leg!(design.architecture(), L => Box::new(self.complete_checker::<L>(design)))
+        self.pose_evaluator_of(design, ScalarSet::all())
+    }
+
+    /// Prepares the design for some scalars besides those that an evaluation computes, which takes less time than for all of them: for
+    /// methods that prepare many designs. No other scalar has a meaning.
+    pub fn pose_evaluator_of(&self, design: &Design, set: ScalarSet) -> Box<dyn PoseEvaluator> {
+        with_leg!(design.architecture(), L => Box::new(self.checker_of::<L>(design, set)))
     }
 
     /// Prepares the design for all scalars, also for those that an evaluation does not compute.
     pub(super) fn complete_checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
-        let mut checker = self.checker(design);
+        self.checker_of(design, ScalarSet::all())
+    }
+
+    /// Prepares the design for some scalars besides those that are limited.
+    fn checker_of<L: Leg>(&self, design: &Design, set: ScalarSet) -> PoseChecker<L> {
+        let asks = |scalars: &[PoseScalar]| scalars.iter().any(|&scalar| set.contains(scalar));
+        let is_limited = self.settings.thresholds.get(PoseScalar::Clearance).is_some();
+        let bodies = match asks(&[PoseScalar::Clearance]) || is_limited {
+            true => self.bodies_of(design),
+            false => Bodies::unpaired(design, &self.stack_of(design), &self.body_basis()),
+        };
+        let mut checker = self.checker_with(design, bodies);
         let stiffness = checker.stiffness.as_ref();
-        checker.strength = stiffness.map(|stiffness| self.strength(design, stiffness));
-        checker.dynamics = stiffness.map(|stiffness| self.dynamics(design, stiffness));
+        if asks(PoseScalar::OF_LOADS) {
+            checker.strength = stiffness.map(|stiffness| self.strength(design, stiffness));
+        }
+        if asks(PoseScalar::OF_MOTION) {
+            checker.dynamics = stiffness.map(|stiffness| self.dynamics(design, stiffness));
+        }
         checker
     }
 
@@ -430,14 +455,17 @@ impl Model {
 
     /// Returns the members of a design in a stack.
     pub(super) fn bodies_in(&self, design: &Design, stack: &Stack) -> Bodies {
-        let basis = BodyBasis {
+        Bodies::new(design, stack, &self.body_basis())
+    }
+
+    fn body_basis(&self) -> BodyBasis<'_> {
+        BodyBasis {
             legs: &self.settings.legs,
             settings: &self.settings.bodies,
             joints: &self.settings.joint_sizes,
             sections: &self.settings.sections,
             barriers: &self.barriers,
-        };
-        Bodies::new(design, stack, &basis)
+        }
     }
 
     /// Returns what no member may cross.

@@ -2,12 +2,12 @@
 
 use kinefront_model::evaluation::{Evaluation, GridChoice, Quantity};
 use kinefront_model::mechanism::Design;
-use kinefront_model::workers::{OneWorker, Workers};
+use kinefront_model::workers::Workers;
 use kinefront_model::workspace::Region;
 use kinefront_optimum::{LocalProblem, Polished};
 
 use super::LocalAnswer;
-use crate::DesignProblem;
+use crate::{DesignProblem, PoolWorkers};
 
 /// Slack that a design for the fine grid keeps, so that rounding misses no requirement.
 pub(super) const ROOM: f64 = 2e-7;
@@ -59,7 +59,7 @@ impl DesignProblem {
         let most = if has_lists { LARGEST_ROOM } else { ROOM };
         let mut better = improved
             .iter()
-            .filter_map(|answer| self.held_on_fine_grid(answer, [ROOM, most], &OneWorker))
+            .filter_map(|answer| self.held_on_fine_grid(answer, [ROOM, most], &PoolWorkers))
             .filter(|better| keeps_others(better) && is_no_worse(better));
         match better.next() {
             // It may be worse in the first objective, because it holds the others between the poses of the grid, too.
@@ -77,7 +77,7 @@ impl DesignProblem {
 
     /// Returns the best design near another one for an aim, verified on the fine grid; `None` if none holds there.
     pub(crate) fn verify_toward(&self, near: &Evaluation, aim: &Aim) -> Option<Evaluation> {
-        self.verify_with(near, aim, [ROOM, LARGEST_ROOM], &OneWorker)
+        self.verify_with(near, aim, [ROOM, LARGEST_ROOM], &PoolWorkers)
     }
 
     /// Returns the best design near another one that keeps every requirement with a slack, verified on the fine grid; `None` if none does.

@@ -80,6 +80,13 @@ pub(crate) struct BodyBasis<'a> {
 impl Bodies {
     /// Prepares the members and joints of `design`, stacked as given.
     pub(crate) fn new(design: &Design, stack: &Stack, basis: &BodyBasis<'_>) -> Self {
+        let mut bodies = Self::unpaired(design, stack, basis);
+        bodies.pair_up();
+        bodies
+    }
+
+    /// Prepares them without their pairs, so that no clearance can be computed.
+    pub(crate) fn unpaired(design: &Design, stack: &Stack, basis: &BodyBasis<'_>) -> Self {
         let BodyBasis { settings, sections, .. } = *basis;
         let kinds = kinds(design.architecture());
         let (legs, platform) = (sections.legs.is_square(), sections.platform.is_square());
@@ -100,7 +107,7 @@ impl Bodies {
         };
         let half_length = settings.slider_half_length(design).min(NUMBER_LIMIT);
         let geometry = &basis.legs.geometry;
-        let mut bodies = Self {
+        Self {
             stack: *stack,
             kinds,
             radii,
@@ -115,9 +122,7 @@ impl Bodies {
             are_square: [legs, legs, platform],
             barriers: Arc::clone(basis.barriers),
             pairs: Vec::new(),
-        };
-        bodies.pair_up();
-        bodies
+        }
     }
 
     /// Returns the layers in which the members are.
