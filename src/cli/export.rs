@@ -13,17 +13,7 @@ use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of, run_of, study_b
 use super::{Ending, Failure, exists_already, say};
 
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
-Formats of a design: gltf (.glb), mjcf (.xml), sdf, urdf, dxf, json, csv-parts (.csv: parts to order and cut), step (an assembly for CAD), csv-trajectory
-(.csv: the motion of the study every millisecond, for a controller).
-Formats of a front: csv, parquet; specify the run folder instead of a design.
-
-Examples:
-  kinefront export --design \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\" --out design.glb
-  kinefront export run/front.csv#12 --format mjcf --out design.xml
-  kinefront export run/front.csv#12 --out parts.csv
-  kinefront export run/front.csv#12 --format csv-trajectory --out trajectory.csv
-  kinefront export run --out front.parquet")]
+#[command(after_help = after_help())]
 #[command(group = exactly_one_of(A_DESIGN))]
 pub struct ExportArguments {
     #[command(flatten)]
@@ -37,6 +27,25 @@ pub struct ExportArguments {
     /// File to write, which must not exist; `-` means standard output.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+}
+
+/// The examples of the help.
+const EXAMPLES: &str = "\
+Examples:
+  kinefront export --design \"3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056\" --out design.glb
+  kinefront export run/front.csv#12 --format mjcf --out design.xml
+  kinefront export run/front.csv#12 --out parts.csv
+  kinefront export run/front.csv#12 --format csv-trajectory --out trajectory.csv
+  kinefront export run --out front.parquet";
+
+/// The formats, each with its file extension and its use.
+fn after_help() -> String {
+    let mut text = String::from("Formats of a design:\n");
+    for format in Format::ALL {
+        text += &format!("  {:<15} .{:<5} {}\n", format.key(), format.extension(), format.title());
+    }
+    text += "Formats of a front: csv, parquet; specify the run folder instead of a design.\n\n";
+    text + EXAMPLES
 }
 
 /// Content and format of the exported file.
@@ -80,9 +89,14 @@ impl ExportArguments {
             "csv" if !self.subject.is_design() => Ok(ExportTarget::Csv),
             "parquet" => Ok(ExportTarget::Parquet),
             _ => design().map(ExportTarget::Design).ok_or_else(|| {
+                let mut known: Vec<&str> = Format::ALL.iter().map(Format::extension).collect();
+                known.sort_unstable();
+                known.dedup();
                 miette!(
-                    help =
-                        "give --format, or a file that ends in .step, .glb, .xml, .sdf, .urdf, .dxf, .json, .csv or .parquet",
+                    help = format!(
+                        "give --format, or a file that ends in .{} or .parquet",
+                        known.join(", .")
+                    ),
                     "cannot determine the format of {}",
                     self.out.display()
                 )

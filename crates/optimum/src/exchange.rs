@@ -3,7 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::convex::ConvexProgram;
+use super::hessian::Hessian;
 use super::multipliers::Multipliers;
+use super::patience::Patience;
 use super::place::Density;
 use super::polished::Polished;
 use super::problem::LocalProblem;
@@ -33,10 +35,6 @@ const EXPLAINED: f64 = 1e-6;
 
 /// Number of times that the Hessian is determined anew.
 const RENEWALS: usize = 8;
-
-/// Least and largest curvature.
-const FLATTEST: f64 = 1e-3;
-const STEEPEST: f64 = 1e6;
 
 /// Two critical poses at one place whose slacks differ by less than this are one constraint.
 const IDENTICAL: f64 = 1e-11;
@@ -71,15 +69,6 @@ const HEAVIEST: f64 = 2e3;
 /// Curvature that the cost of a violation has, so that a step is unique.
 const BENT: f64 = 1e-3;
 
-/// Rounds without an improvement after which the search ends.
-const PATIENCE: usize = 10;
-
-/// The same for the designs of a front: many are looked for, and another one takes the place of one that does not exist.
-const QUICK_PATIENCE: usize = 5;
-
-/// Share of what was missed before that is missed again where critical poses contradict each other.
-const CONTRADICTED: f64 = 0.9;
-
 /// Critical poses with more slack than this are forgotten.
 const SLACK: f64 = 0.25;
 
@@ -92,7 +81,7 @@ pub(crate) struct Exchange<'a> {
     reach: Vec<[f64; 2]>,
     critical: Vec<Critical>,
     /// Approximation of the Hessian of the Lagrangian.
-    hessian: DMatrix<f64>,
+    hessian: Hessian,
     /// Weight of the violations.
     weight: f64,
     /// Sum of the multipliers of the last step.
@@ -101,47 +90,6 @@ pub(crate) struct Exchange<'a> {
     left: f64,
     /// The kinds of requirements that there are.
     kinds: Vec<Kind>,
-}
-
-/// How long a search goes on that comes no nearer to keeping its requirements.
-struct Patience {
-    /// Whether the search is for a design of a front.
-    is_quick: bool,
-    /// The least amount that was missed, and the rounds since then.
-    least: f64,
-    since: usize,
-    /// What the last round missed, and the rounds in which the poses that are known contradicted each other.
-    last: f64,
-    contradicted: usize,
-}
-
-impl Patience {
-    fn new(is_quick: bool) -> Self {
-        Self {
-            is_quick,
-            least: f64::INFINITY,
-            since: 0,
-            last: f64::INFINITY,
-            contradicted: 0,
-        }
-    }
-
-    /// Returns whether a search should end after a round that misses `missed`, of which `left` is missed at the poses that were known, with
-    /// violations of some weight.
-    fn is_spent(&mut self, missed: f64, left: f64, weight: f64) -> bool {
-        self.since += 1;
-        if missed < 0.7 * self.least {
-            (self.least, self.since) = (missed, 0);
-        }
-        // Poses that contradict each other, whatever their violations weigh, still do so when others are added.
-        let contradicts = weight >= HEAVIEST && left > 0.5 * missed && missed > CONTRADICTED * self.last;
-        self.contradicted = if contradicts { self.contradicted + 1 } else { 0 };
-        self.last = missed;
-        match self.is_quick {
-            true => self.since > QUICK_PATIENCE || self.contradicted >= 2,
-            false => self.since > PATIENCE,
-        }
-    }
 }
 
 /// A step of the quadratic programme.
@@ -173,7 +121,7 @@ impl<'a> Exchange<'a> {
             reach: bounds.clone(),
             bounds,
             critical: Vec::new(),
-            hessian: DMatrix::identity(count, count),
+            hessian: Hessian::identity(count),
             weight: LIGHTEST,
             pressure: 0.0,
             left: 0.0,
@@ -210,13 +158,13 @@ impl<'a> Exchange<'a> {
             } else {
                 (1.5 * span).min(WIDEST)
             };
-            let is_spent = patience.is_spent(missed, self.left, self.weight);
+            let is_spent = patience.is_spent(missed, self.left, self.weight >= HEAVIEST);
             let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && is_spent;
             // The approximation of the curvature may have grown so steep that steps stay short.
             if missed <= SLOW && moved <= SLOW && renewed < RENEWALS {
                 let found = Multipliers::new(self.problem, &self.unknowns, &survey);
                 if found.residual > EXPLAINED {
-                    self.renew_hessian(&found);
+                    self.hessian.renew(self.problem, &self.unknowns, &found);
                     renewed += 1;
                     continue;
                 }
@@ -350,7 +298,7 @@ impl<'a> Exchange<'a> {
                 changed.iter().zip(&self.unknowns).map(|(new, old)| new - old),
             );
             let turned = of_lagrangian(&new_gradient, &new_rows) - of_lagrangian(&gradient, &rows);
-            self.bend(&way, turned);
+            self.hessian.bend(&way, turned);
             if gain > 0.7 * step.promised && size > 0.8 * trust {
                 trust = (2.0 * trust).min(2.0 * first_trust);
             }
@@ -415,7 +363,7 @@ impl<'a> Exchange<'a> {
         program
             .quadratic
             .view_mut((0, 0), (count, count))
-            .copy_from(&self.hessian);
+            .copy_from(self.hessian.matrix());
         (count..count + kinds).for_each(|violation| program.quadratic[(violation, violation)] = BENT);
         program.linear.rows_mut(0, count).copy_from(gradient);
         program.linear.rows_mut(count, kinds).fill(self.weight);
@@ -441,8 +389,7 @@ impl<'a> Exchange<'a> {
             .map(|violation| violation.max(0.0))
             .sum();
         let violation: f64 = self.violations(values).iter().sum();
-        let quadratic = 0.5 * change.dot(&(&self.hessian * &change));
-        let promised = self.weight * (violation - left) - gradient.dot(&change) - quadratic;
+        let promised = self.weight * (violation - left) - gradient.dot(&change) - self.hessian.half_square(&change);
         if left > 1e-9 && self.weight < HEAVIEST {
             self.weight *= 2.0;
         }
@@ -451,44 +398,6 @@ impl<'a> Exchange<'a> {
             multipliers,
             promised,
         })
-    }
-
-    /// Determines the Hessian of the Lagrangian by differences, made positive definite.
-    fn renew_hessian(&mut self, multipliers: &Multipliers) {
-        let (critical, weights): (Vec<Critical>, Vec<f64>) = multipliers
-            .critical_with_values()
-            .map(|(critical, multiplier)| (*critical, multiplier))
-            .unzip();
-        let of_places = |_: &[f64]| Some(critical.clone());
-        let hessian = self
-            .problem
-            .hessian_of_lagrangian(&self.unknowns, &DVector::from_vec(weights), of_places);
-        let Some(hessian) = hessian else { return };
-        let mut found = hessian.symmetric_eigen();
-        for value in found.eigenvalues.iter_mut() {
-            *value = value.abs().clamp(FLATTEST, STEEPEST);
-        }
-        self.hessian = found.recompose();
-    }
-
-    /// Updates the approximation of the Hessian by the change of the gradient of the Lagrangian along a way, damped so that it stays
-    /// positive definite.
-    fn bend(&mut self, way: &DVector<f64>, turned: DVector<f64>) {
-        let image = &self.hessian * way;
-        let curvature = way.dot(&image);
-        if curvature < 1e-30 || way.amax() < 1e-9 {
-            return;
-        }
-        let along = way.dot(&turned);
-        let share = if along >= 0.2 * curvature {
-            1.0
-        } else {
-            0.8 * curvature / (curvature - along)
-        };
-        let turned = turned * share + &image * (1.0 - share);
-        let along = way.dot(&turned);
-        self.hessian += &turned * turned.transpose() / along - &image * image.transpose() / curvature;
-        self.hessian = 0.5 * (&self.hessian + self.hessian.transpose());
     }
 }
 

@@ -8,10 +8,12 @@
 mod convex;
 mod exchange;
 mod finish;
+mod hessian;
 mod meeting;
 mod multipliers;
 mod nearest;
 mod parameter;
+mod patience;
 mod place;
 mod polish;
 mod polished;

@@ -126,16 +126,14 @@ impl LocalProblem {
     /// # Errors
     /// [`LocalError`] if the question is none.
     pub fn new(question: LocalQuestion, start: &Design) -> Result<Self, LocalError> {
+        let model = Model::new(question.settings.clone())?;
         let goal = match question.objective.quantity {
-            quantity @ (Quantity::Mass | Quantity::LegsMass | Quantity::PlatformMass | Quantity::Height) => {
-                Goal::Design(quantity)
-            }
+            quantity if model.quantity_of_dimensions(quantity, start).is_some() => Goal::Design(quantity),
             Quantity::WorkspaceRadius => Goal::Radius,
             Quantity::Worst(scalar) if scalar.bounds_poses() || scalar == PoseScalar::Footprint => Goal::Level(scalar),
             other => return Err(LocalError::Objective(other)),
         };
         let area = Area::new(&question.workspace.region).ok_or(LocalError::NoRadius)?;
-        let model = Model::new(question.settings.clone())?;
         let is_three_fold = matches!(area, Area::Disc(_)) && model.is_symmetric(start);
         let mut problem = Self {
             spots: Arc::default(),
@@ -240,9 +238,8 @@ impl LocalProblem {
     /// Returns the requirement that a limit of the design as a whole is; `None` if it is of no design or not part of a local problem.
     fn requirement_of(&self, place: usize, limit: &QuantityLimit) -> Option<Requirement> {
         let is_known = match limit.quantity {
-            Quantity::Mass | Quantity::LegsMass | Quantity::PlatformMass | Quantity::Height => true,
             Quantity::Worst(scalar) => scalar == PoseScalar::Footprint && matches!(limit.bound, Bound::AtMost(_)),
-            _ => false,
+            quantity => self.model.quantity_of_dimensions(quantity, &self.start).is_some(),
         };
         (is_known && limit.quantity.is_of(&self.start) && !self.question.is_of_bars)
             .then_some(Requirement::Quantity(place))
@@ -354,7 +351,7 @@ impl LocalProblem {
         let logarithm = match self.goal {
             Goal::Design(quantity) => {
                 let design = self.design(unknowns);
-                let value = design.and_then(|design| self.quantity(&design, quantity));
+                let value = design.and_then(|design| self.model.quantity_of_dimensions(quantity, &design));
                 let Some(value) = value else { return f64::INFINITY };
                 libm::log(value)
             }
@@ -373,17 +370,6 @@ impl LocalProblem {
         libm::exp(self.goal_sign() * self.minimised(unknowns))
     }
 
-    /// Returns a quantity of a design as a whole.
-    fn quantity(&self, design: &Design, quantity: Quantity) -> Option<f64> {
-        match quantity {
-            Quantity::Mass => Some(self.model.mass(design)),
-            Quantity::LegsMass => Some(self.model.legs_mass(design)),
-            Quantity::PlatformMass => Some(self.model.platform_mass(design)),
-            Quantity::Height => Some(self.model.bodies_of(design).height()),
-            _ => None,
-        }
-    }
-
     /// Returns the design that is similar to one, within the bounds; `None` if it is no design.
     pub fn scaled(&self, design: &Design, factor: f64) -> Option<Design> {
         let mut free = self.question.variables.iter().filter(|free| !free.variable.is_angle());
@@ -400,7 +386,8 @@ impl LocalProblem {
 
     /// Returns the objective of a design, if it is a quantity of the design as a whole.
     pub fn objective_of(&self, design: &Design) -> Option<f64> {
-        self.quantity(design, self.question.objective.quantity)
+        self.model
+            .quantity_of_dimensions(self.question.objective.quantity, design)
     }
 
     /// Prepares the design of some unknowns; `None` if they are no design.
@@ -448,7 +435,7 @@ impl LocalProblem {
 
     /// Returns the excess of a quantity of the design as a whole over its limit, as a logarithm.
     pub(crate) fn excess_of_quantity(&self, prepared: &Prepared, limit: &QuantityLimit) -> Option<f64> {
-        let value = self.quantity(&prepared.design, limit.quantity)?;
+        let value = self.model.quantity_of_dimensions(limit.quantity, &prepared.design)?;
         Some(excess(value, limit))
     }
 }

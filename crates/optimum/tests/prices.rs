@@ -338,6 +338,31 @@ fn forces_and_lengths_have_no_scale_of_their_own() {
     }
 }
 
+/// A design that keeps its requirements exactly has to change by less than a millionth to keep a slack besides.
+#[test]
+fn an_optimum_keeps_the_slack_that_is_asked_for() {
+    let case = case("b");
+    let (design, mass) = (design_of(&case), number(&case["mass_kg"]));
+    let problem = LocalProblem::new(question(Region::Disc(1.2)), &design).expect("a question");
+    let exact = polished(&problem, &displaced(&design));
+    for slack in [2e-7, 1e-6, 1e-5] {
+        let mut asked = problem.question().clone();
+        asked.slack = slack;
+        let found = problem.with_question(asked).expect("a question");
+        let found = found.polish(&exact.design, exact.home).expect("a design");
+        assert!(
+            found.is_feasible(),
+            "with a slack of {slack:e}, {:e} is missed",
+            found.missed
+        );
+        assert!(
+            (found.objective / mass - 1.0).abs() < 20.0 * slack,
+            "{} kg",
+            found.objective
+        );
+    }
+}
+
 #[test]
 fn a_question_without_a_local_problem_says_so() {
     let start: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"

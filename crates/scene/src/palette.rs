@@ -109,3 +109,16 @@ pub fn constraint(constraint: Constraint) -> [u8; 3] {
         Constraint::Clearance => [238, 153, 51],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_architecture_has_a_colour_of_its_own() {
+        let mut colors: Vec<[u8; 3]> = Architecture::ALL.iter().map(|&each| architecture(each)).collect();
+        colors.sort_unstable();
+        colors.dedup();
+        assert_eq!(colors.len(), Architecture::ALL.len());
+    }
+}

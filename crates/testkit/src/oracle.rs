@@ -98,7 +98,8 @@ impl LegMembers<'_> {
             "RRP" => vec![self.crank(), self.guide_on_platform()],
             "RRR" => vec![self.crank(), self.link()],
             "RPP" => vec![self.turning_guide(), self.guide_on_platform()],
-            _ => vec![self.telescopic_leg()],
+            "RPR" => vec![self.telescopic_leg()],
+            other => panic!("which members has a leg of the chain {other}?"),
         };
         all.push(self.platform_bar());
         all

@@ -13,13 +13,16 @@
 mod cycle;
 mod drives;
 mod evaluate;
+mod mass;
 mod members;
 mod model;
 mod over_workspace;
 mod parts;
 mod pose;
+mod prepare;
 mod quantities;
 mod quantity;
+mod settings;
 mod sizing;
 mod stacking;
 mod task;
@@ -32,11 +35,12 @@ pub use crate::pose::{
 pub use crate::stiffness::Contribution;
 pub use cycle::ShortestCycle;
 pub use members::MemberReport;
-pub use model::{GridChoice, Model, ModelSettings};
+pub use model::{GridChoice, Model};
 pub use over_workspace::{At, OverWorkspace};
 pub use parts::{CutBar, Part};
 pub use pose::{PoseEvaluation, PosedDesign, PosedDynamics, Unreachable};
 pub use quantity::{Bound, LimitResult, Objective, Quantity, QuantityLimit, QuantitySet, QuantityValues};
+pub use settings::ModelSettings;
 pub use sizing::{SizingRanges, WorkspaceTarget};
 pub use task::{SelectedDrive, TaskFailure, TaskFault, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
 

@@ -25,23 +25,31 @@ pub(super) fn known(
     let mut values = QuantityValues::default();
     for quantity in Quantity::all().filter(|quantity| asked(*quantity)) {
         let value = match quantity {
-            Quantity::Mass => Some(model.mass(design)),
-            Quantity::LegsMass => Some(model.legs_mass(design)),
-            Quantity::PlatformMass => Some(model.platform_mass(design)),
             Quantity::Height => Some(height),
             Quantity::WorkspaceRadius => Some(workspace_radius),
             Quantity::Assembly | Quantity::Worst(_) => {
                 let constraint = quantity.constraint();
                 constraint.and_then(|constraint| constraints[constraint as usize].value)
             }
-            // It is a mean over the region, which only some designs have.
-            Quantity::DexterityMean => None,
-            // They are of a motion, which is scaled to the workspace.
-            _ => None,
+            // Others are of the region or of a motion, which only some designs have.
+            other => model.quantity_of_dimensions(other, design),
         };
         values.set(quantity, value);
     }
     values
+}
+
+impl Model {
+    /// Returns a quantity that the dimensions of a design determine alone, without any pose; `None` of any other quantity.
+    pub fn quantity_of_dimensions(&self, quantity: Quantity, design: &Design) -> Option<f64> {
+        match quantity {
+            Quantity::Mass => Some(self.mass(design)),
+            Quantity::LegsMass => Some(self.legs_mass(design)),
+            Quantity::PlatformMass => Some(self.platform_mass(design)),
+            Quantity::Height => Some(self.bodies_of(design).height()),
+            _ => None,
+        }
+    }
 }
 
 /// Adds those quantities over the region of a design that the study asks for.

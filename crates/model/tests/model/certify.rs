@@ -1,5 +1,7 @@
 //! Certificates: published intervals, enclosures against doubles, and proofs that must fail.
 
+use std::sync::LazyLock;
+
 use glam::DVec2;
 use kinefront_model::certify::{Certificate, CertifyError, CertifyOptions, Verdict};
 use kinefront_model::clearance::{Layers, Obstacle, ObstacleShape, Stacking, Surroundings};
@@ -184,30 +186,11 @@ fn is_required(model: &Model, scalar: PoseScalar) -> bool {
     !is_optional || model.settings().thresholds.get(scalar).is_some()
 }
 
-const AT_POSES: [PoseScalar; 22] = [
-    PoseScalar::Reach,
-    PoseScalar::Dexterity,
-    PoseScalar::StiffnessXy,
-    PoseScalar::StiffnessZ,
-    PoseScalar::StiffnessPhiZ,
-    PoseScalar::Clearance,
-    PoseScalar::Displacement,
-    PoseScalar::Transmission,
-    PoseScalar::Stress,
-    PoseScalar::SafetyFactor,
-    PoseScalar::BucklingFactor,
-    PoseScalar::JointForce,
-    PoseScalar::JointMoment,
-    PoseScalar::ActuatorForce,
-    PoseScalar::ActuatorTorque,
-    PoseScalar::NaturalFrequency,
-    PoseScalar::PositionError,
-    PoseScalar::OrientationError,
-    PoseScalar::ActuatorSpeed,
-    PoseScalar::ActuatorRate,
-    PoseScalar::MotionForce,
-    PoseScalar::MotionTorque,
-];
+/// The scalars that a certificate encloses.
+static AT_POSES: LazyLock<Vec<PoseScalar>> = LazyLock::new(|| {
+    let all = PoseScalar::ALL.iter().copied();
+    all.filter(|scalar| scalar.entry().is_enclosed).collect()
+});
 
 /// The model whose characteristic length depends on which orientations are reached.
 const ISOTROPIC: &str = "the isotropic characteristic length";
@@ -395,7 +378,7 @@ proptest! {
         if !is_reached || reach <= 0.0 {
             return Err(TestCaseError::reject("the legs do not reach"));
         }
-        for scalar in AT_POSES {
+        for &scalar in AT_POSES.iter() {
             let margin = model.margin_at(&design, &pose, scalar);
             if margin.abs() > 1e-6 && is_required(&model, scalar) && model.has(&design, scalar) {
                 let of = values.iter().filter(|(found, _)| *found == scalar);
@@ -500,7 +483,8 @@ proptest! {
         let (pose, widths) = polar_box(&design, middle, width);
         let enclosed = model.enclose(&design, &pose).expect("values");
         let proved: Vec<PoseScalar> = AT_POSES
-            .into_iter()
+            .iter()
+            .copied()
             .filter(|scalar| PoseScalar::OF_MOTION.contains(scalar))
             .filter(|scalar| {
                 let mut forms = enclosed.iter().filter(|(found, _)| found == scalar).peekable();

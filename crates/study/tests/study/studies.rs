@@ -4,6 +4,7 @@ use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
 use kinefront_model::kinematics::CharacteristicLength;
 use kinefront_model::mechanism::{BarLength, Design};
 use kinefront_model::stiffness::{Material, StiffnessDefinition};
+use kinefront_model::workspace::Grid;
 use kinefront_optimize::Variable;
 use kinefront_study::{
     BUILTIN, Builtin, Check, DesignProblem, Initial, MATERIALS, Overrides, Setting, Stagnation, Study, StudyError,
@@ -263,6 +264,36 @@ fn every_choice_reaches_the_model() {
     let design = problem.design(&[1.0, 2.0, 1.0, 2.0, 0.03, 0.04]).expect("a design");
     assert_eq!(design.architecture().name(), "3-PRR");
     assert_eq!(design.working_mode().signs(), [1, -1, 1]);
+}
+
+/// A grid of which a study states some keys keeps its own defaults for the others.
+#[test]
+fn a_grid_may_state_some_of_its_keys() {
+    let study = Study::parse(
+        "[grid.fine]\nray_steps = 100\n[grid.reference]\nphi_step_deg = 5",
+        "coarse",
+    );
+    let settings = study
+        .expect("a valid study")
+        .model()
+        .expect("a model")
+        .settings()
+        .clone();
+    let of = |grid: Grid| {
+        (
+            grid.phi_step_deg(),
+            grid.directions(),
+            grid.ray_steps(),
+            grid.halvings(),
+        )
+    };
+    assert_eq!(of(settings.fine_grid), (0.5, 180, 100, 12));
+    assert_eq!(of(settings.reference_grid), (5.0, 36, 50, 12));
+    let unknown = printed("[grid.fine]\nray_step = 100");
+    assert!(
+        unknown.contains("mine.toml:2") && unknown.contains("ray_steps"),
+        "{unknown}"
+    );
 }
 
 /// Each setting changes what it is declared for: the model, the ranges of the variables, or the settings of the search.

@@ -31,10 +31,10 @@ use crate::mechanism::{AnyLeg, Design, JointKind, LegEnclosure, LegFrameEnclosur
 use crate::pose::{PoseChecker, ScalarSet};
 use crate::spatial::{LEGS, Pose};
 
-/// Returns a limited scalar that has no form: one of the region as a whole, or the determinant, of which the sign alone counts.
+/// Returns a limited scalar that has no form, such as one of the region as a whole.
 pub(super) fn uncovered(thresholds: &Thresholds) -> Option<PoseScalar> {
     let mut limited = thresholds.iter().map(|(scalar, _)| scalar);
-    limited.find(|scalar| matches!(scalar, PoseScalar::Footprint | PoseScalar::Determinant))
+    limited.find(|scalar| !scalar.entry().is_enclosed)
 }
 
 /// The scalars whose limits are proved on a box, and therefore on every part of it.

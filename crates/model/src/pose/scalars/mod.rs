@@ -1,7 +1,8 @@
 //! The scalars of a pose: the one table from which lanes, loops over poses, thresholds, limits, quantities, fields and columns follow
 //! (docs/model.md, section 6).
 //!
-//! A further scalar is an entry here and a file with its formula. If it is a constraint with an id of its own, the entry says so.
+//! A further scalar is an entry here and a file with its formula. If it is a constraint with an id of its own, the entry says so; if a
+//! certificate has a form of it (`certify/forms/`), the entry says so, too.
 
 mod displacement;
 mod dynamics;
@@ -35,6 +36,8 @@ pub struct PoseScalarEntry {
     pub margin: MarginUnit,
     /// Whether thicker bars improve the value and nothing else of the design has to change for that.
     pub is_of_bars: bool,
+    /// Whether a certificate encloses the value over boxes of poses: a limit of any other value is not proved.
+    pub is_enclosed: bool,
     /// Whether the value is the root of a stiffness by a mass: bars are sized by its square, and from some radius on the mass of thicker
     /// bars makes it worse.
     pub is_frequency: bool,
@@ -63,6 +66,7 @@ impl PoseScalarEntry {
             at_pose,
             margin: MarginUnit::Threshold,
             is_of_bars: false,
+            is_enclosed: false,
             is_frequency: false,
         }
     }
@@ -89,6 +93,11 @@ impl PoseScalarEntry {
 
     const fn as_frequency(mut self) -> Self {
         self.is_frequency = true;
+        self
+    }
+
+    const fn enclosed(mut self) -> Self {
+        self.is_enclosed = true;
         self
     }
 
@@ -252,27 +261,27 @@ pose_scalars! {
         Reach [Reach "g2" "reach_and_limits"] = PoseScalarEntry::new(
             QuantityEntry::new("reach_m", "m", "reach", Scope::Poses, Better::Higher,
                 "Smallest distance to a joint limit or to the end of reach (g2).").above_zero(),
-            "limit_margin").labelled("distance to the limits").per_base_radius();
+            "limit_margin").labelled("distance to the limits").per_base_radius().enclosed();
         /// g3: inverse condition number `κ_F⁻¹`.
         Dexterity [Dexterity "g3" "dexterity"] = PoseScalarEntry::new(
             QuantityEntry::new("dexterity", "", "dexterity", Scope::Poses, Better::Higher,
                 "Smallest inverse condition number of the normalized Jacobian (g3).").below(1.0),
-            "inverse_condition").labelled("inverse condition number");
+            "inverse_condition").labelled("inverse condition number").enclosed();
         /// g4: translational stiffness in the plane, `k_xy` \[N/m\].
         StiffnessXy [StiffnessXy "g4" "stiffness_xy"] = PoseScalarEntry::new(
             QuantityEntry::new("k_xy_n_per_m", "N/m", "k_xy", Scope::Poses, Better::Higher,
                 "Smallest translational stiffness in the plane (g4).").logarithmic().reference(Reference::Limit(100.0)),
-            "k_xy").labelled("stiffness k_xy").of_bars();
+            "k_xy").labelled("stiffness k_xy").of_bars().enclosed();
         /// g5: translational stiffness out of the plane, `k_z` \[N/m\].
         StiffnessZ [StiffnessZ "g5" "stiffness_z"] = PoseScalarEntry::new(
             QuantityEntry::new("k_z_n_per_m", "N/m", "k_z", Scope::Poses, Better::Higher,
                 "Smallest translational stiffness out of the plane (g5).").logarithmic().reference(Reference::Limit(100.0)),
-            "k_z").labelled("stiffness k_z").of_bars();
+            "k_z").labelled("stiffness k_z").of_bars().enclosed();
         /// g6: rotational stiffness about z, `k_φz` \[N·m/rad\].
         StiffnessPhiZ [StiffnessPhiZ "g6" "stiffness_phi_z"] = PoseScalarEntry::new(
             QuantityEntry::new("k_phi_z_nm_per_rad", "N·m/rad", "k_φz", Scope::Poses, Better::Higher,
                 "Smallest rotational stiffness about z (g6).").logarithmic().reference(Reference::Limit(100.0)),
-            "k_phi_z").labelled("stiffness k_φz").of_bars();
+            "k_phi_z").labelled("stiffness k_φz").of_bars().enclosed();
         /// Sign rule: `det A / ℓ`, which keeps one sign over the workspace.
         Determinant [DeterminantSign "det_sign" "determinant_sign"] = PoseScalarEntry::new(
             // No study bounds the determinant at each pose: the sign rule does.
@@ -283,7 +292,7 @@ pose_scalars! {
         Clearance [Clearance "g7" "clearance"] = PoseScalarEntry::new(
             QuantityEntry::new("clearance_m", "m", "clearance", Scope::Poses, Better::Higher,
                 "Smallest clearance between members that are not joined (g7)."),
-            "clearance").labelled("clearance between members").in_millimetres().per_base_radius();
+            "clearance").labelled("clearance between members").in_millimetres().per_base_radius().enclosed();
     }
     on_demand {
         /// Displacement of `P` under the in-plane force, in its most compliant direction \[m\].
@@ -291,13 +300,13 @@ pose_scalars! {
             QuantityEntry::new("displacement_max_m", "m", "largest displacement", Scope::Poses, Better::Lower,
                 "Largest displacement of P under the in-plane force of the requirements, in its most compliant direction.")
                 .above_zero().logarithmic().reference(Reference::Displacement(2.0)),
-            "displacement").labelled("displacement under the in-plane force").in_millimetres().of_bars();
+            "displacement").labelled("displacement under the in-plane force").in_millimetres().of_bars().enclosed();
         /// Transmission: `|B_ii|` of the leg that has the least, divided by the lever of a revolute actuator; in \[0, 1\].
         Transmission by transmission::lanes = PoseScalarEntry::new(
             QuantityEntry::new("transmission_min", "", "smallest transmission", Scope::Poses, Better::Higher,
                 "Smallest transmission of a leg: the speed along its last link per unit speed of its actuated joint.")
                 .above_zero().below(1.0),
-            "transmission").labelled("transmission");
+            "transmission").labelled("transmission").enclosed();
         /// Radius of the smallest circle about `O` that holds the base and all members \[m\].
         Footprint by footprint::lanes = PoseScalarEntry::new(
             QuantityEntry::new("footprint_m", "m", "footprint", Scope::Region, Better::Lower,
@@ -311,43 +320,43 @@ pose_scalars! {
             QuantityEntry::new("stress_max_pa", "Pa", "largest stress", Scope::Poses, Better::Lower,
                 "Largest equivalent stress of any bar of the legs or of the platform under the loads and the weight of the members.")
                 .above_zero().logarithmic().reference(Reference::Number(1e9)),
-            "stress").labelled("largest stress").shown_in("MPa", 1e-6).of_bars();
+            "stress").labelled("largest stress").shown_in("MPa", 1e-6).of_bars().enclosed();
         /// Yield strength divided by the largest stress.
         SafetyFactor = PoseScalarEntry::new(
             QuantityEntry::new("safety_factor_min", "", "safety factor", Scope::Poses, Better::Higher,
                 "Yield strength of the material divided by the largest stress.")
                 .above_zero().logarithmic().reference(Reference::Number(100.0)),
-            "safety_factor").labelled("safety factor against yielding").of_bars();
+            "safety_factor").labelled("safety factor against yielding").of_bars().enclosed();
         /// Factor by which the loads may grow until the manipulator buckles; a lower bound.
         BucklingFactor = PoseScalarEntry::new(
             QuantityEntry::new("buckling_factor_min", "", "buckling factor", Scope::Poses, Better::Higher,
                 "Factor by which the loads and the weight of the members may grow until the manipulator buckles; a lower bound.")
                 .above_zero().logarithmic().reference(Reference::Number(1000.0)),
-            "buckling_factor").labelled("factor against buckling").of_bars();
+            "buckling_factor").labelled("factor against buckling").of_bars().enclosed();
         /// Largest force of any joint \[N\].
         JointForce = PoseScalarEntry::new(
             QuantityEntry::new("joint_force_max_n", "N", "largest joint force", Scope::Poses, Better::Lower,
                 "Largest force of any joint, without the component along its actuator.")
                 .above_zero().logarithmic().reference(Reference::Number(1e5)),
-            "joint_force").labelled("largest force of a joint");
+            "joint_force").labelled("largest force of a joint").enclosed();
         /// Largest moment of any joint \[N·m\].
         JointMoment = PoseScalarEntry::new(
             QuantityEntry::new("joint_moment_max_nm", "N·m", "largest joint moment", Scope::Poses, Better::Lower,
                 "Largest moment of any joint: the tilting moment of a revolute joint, the whole moment of a prismatic joint.")
                 .above_zero().logarithmic().reference(Reference::Number(1e5)),
-            "joint_moment").labelled("largest moment of a joint");
+            "joint_moment").labelled("largest moment of a joint").enclosed();
         /// Largest force of a prismatic drive \[N\].
         ActuatorForce = PoseScalarEntry::new(
             QuantityEntry::new("actuator_force_max_n", "N", "largest actuator force", Scope::Poses, Better::Lower,
                 "Largest force of a prismatic actuator; revolute ones have none.")
                 .above_zero().logarithmic().reference(Reference::Number(1e5)),
-            "actuator_force").labelled("largest force of an actuator");
+            "actuator_force").labelled("largest force of an actuator").enclosed();
         /// Largest torque of a revolute drive \[N·m\].
         ActuatorTorque = PoseScalarEntry::new(
             QuantityEntry::new("actuator_torque_max_nm", "N·m", "largest actuator torque", Scope::Poses, Better::Lower,
                 "Largest torque of a revolute actuator; prismatic ones have none.")
                 .above_zero().logarithmic().reference(Reference::Number(1e5)),
-            "actuator_torque").labelled("largest torque of an actuator");
+            "actuator_torque").labelled("largest torque of an actuator").enclosed();
     }
     of_motion {
         /// Lowest natural frequency \[Hz\].
@@ -355,43 +364,43 @@ pose_scalars! {
             QuantityEntry::new("natural_frequency_hz", "Hz", "natural frequency", Scope::Poses, Better::Higher,
                 "Lowest natural frequency with the payload and with locked actuators.")
                 .above_zero().logarithmic().reference(Reference::Number(1e3)),
-            "natural_frequency").labelled("lowest natural frequency").of_bars().as_frequency();
+            "natural_frequency").labelled("lowest natural frequency").of_bars().as_frequency().enclosed();
         /// Largest error of the position \[m\].
         PositionError = PoseScalarEntry::new(
             QuantityEntry::new("position_error_m", "m", "position error", Scope::Poses, Better::Lower,
                 "Largest position error that the tolerances cause.")
                 .above_zero().logarithmic().reference(Reference::Number(1.0)),
-            "position_error").labelled("largest error of the position").in_millimetres();
+            "position_error").labelled("largest error of the position").in_millimetres().enclosed();
         /// Largest error of the orientation \[deg\].
         OrientationError = PoseScalarEntry::new(
             QuantityEntry::new("orientation_error_deg", "°", "orientation error", Scope::Poses, Better::Lower,
                 "Largest orientation error that the tolerances cause.")
                 .above_zero().logarithmic().reference(Reference::Number(90.0)),
-            "orientation_error").labelled("largest error of the orientation");
+            "orientation_error").labelled("largest error of the orientation").enclosed();
         /// Largest speed of a prismatic actuator for the motion in any direction \[m/s\].
         ActuatorSpeed = PoseScalarEntry::new(
             QuantityEntry::new("actuator_speed_max_m_per_s", "m/s", "actuator speed", Scope::Poses, Better::Lower,
                 "Largest speed of a prismatic actuator for the motion in any direction that [anywhere] states.")
                 .above_zero().logarithmic().reference(Reference::Number(1e3)),
-            "actuator_speed").labelled("largest speed of an actuator");
+            "actuator_speed").labelled("largest speed of an actuator").enclosed();
         /// Largest speed of a revolute actuator for the motion in any direction \[rad/s\].
         ActuatorRate = PoseScalarEntry::new(
             QuantityEntry::new("actuator_speed_max_rad_per_s", "rad/s", "actuator rate", Scope::Poses, Better::Lower,
                 "Largest speed of a revolute actuator for the motion in any direction that [anywhere] states.")
                 .above_zero().logarithmic().reference(Reference::Number(1e3)),
-            "actuator_rate").labelled("largest rate of an actuator");
+            "actuator_rate").labelled("largest rate of an actuator").enclosed();
         /// Largest force of a prismatic actuator for the motion and load in any direction \[N\].
         MotionForce = PoseScalarEntry::new(
             QuantityEntry::new("motion_force_max_n", "N", "force in motion", Scope::Poses, Better::Lower,
                 "Largest force of a prismatic actuator for the acceleration and load in any direction that [anywhere] states.")
                 .above_zero().logarithmic().reference(Reference::Number(1e6)),
-            "motion_force").labelled("largest force of an actuator in motion");
+            "motion_force").labelled("largest force of an actuator in motion").enclosed();
         /// Largest torque of a revolute actuator for the motion and load in any direction \[N·m\].
         MotionTorque = PoseScalarEntry::new(
             QuantityEntry::new("motion_torque_max_nm", "N·m", "torque in motion", Scope::Poses, Better::Lower,
                 "Largest torque of a revolute actuator for the acceleration and load in any direction that [anywhere] states.")
                 .above_zero().logarithmic().reference(Reference::Number(1e6)),
-            "motion_torque").labelled("largest torque of an actuator in motion");
+            "motion_torque").labelled("largest torque of an actuator in motion").enclosed();
     }
 }
 
