@@ -338,7 +338,7 @@ fn forces_and_lengths_have_no_scale_of_their_own() {
     }
 }
 
-/// A design that keeps its requirements exactly has to change by less than a millionth to keep a slack besides.
+/// A design that keeps its requirements exactly is changed so that it keeps a slack besides, and by no more than that costs.
 #[test]
 fn an_optimum_keeps_the_slack_that_is_asked_for() {
     let case = case("b");
