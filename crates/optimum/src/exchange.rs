@@ -10,7 +10,7 @@ use super::place::Density;
 use super::polished::Polished;
 use super::problem::LocalProblem;
 use super::requirement::{Critical, Kind, NOWHERE};
-use super::survey::{FOLLOWED, is_same, missed};
+use super::survey::{FOLLOWED, is_same, largest_violation, missed};
 
 /// Largest number of times that critical poses are added.
 const ROUNDS: usize = 40;
@@ -248,7 +248,7 @@ impl<'a> Exchange<'a> {
         let mut trust = first_trust;
         let mut values = problem.values_of(&self.unknowns, &self.critical);
         let (mut gradient, mut rows) = problem.derivatives(&self.unknowns, &self.critical);
-        self.left = largest_violation(&values);
+        self.left = largest_violation(values.iter().copied());
         for _ in 0..STEPS {
             let Some(step) = self.step(&gradient, &rows, &values, trust) else {
                 trust *= 0.25;
@@ -303,7 +303,7 @@ impl<'a> Exchange<'a> {
                 trust = (2.0 * trust).min(2.0 * first_trust);
             }
             (self.unknowns, values, gradient, rows) = (changed, new_values, new_gradient, new_rows);
-            self.left = largest_violation(&values);
+            self.left = largest_violation(values.iter().copied());
         }
     }
 
@@ -399,9 +399,4 @@ impl<'a> Exchange<'a> {
             promised,
         })
     }
-}
-
-/// Returns the largest amount by which some values are negative.
-fn largest_violation(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| most.max(-value))
 }

@@ -272,7 +272,12 @@ fn moved(prepared: &Prepared, place: Place, freedom: usize, freedoms: usize, ste
 
 /// Returns the largest amount by which a requirement is missed.
 pub(crate) fn missed(critical: &[Critical]) -> f64 {
-    critical.iter().fold(0.0, |most, critical| most.max(-critical.slack))
+    largest_violation(critical.iter().map(|critical| critical.slack))
+}
+
+/// Returns the largest amount by which some values are negative.
+pub(crate) fn largest_violation(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |most, value| most.max(-value))
 }
 
 /// Adds a minimum unless it is one that was found before.

@@ -68,16 +68,16 @@ impl Model {
     fn checker_of<L: Leg>(&self, design: &Design, set: ScalarSet) -> PoseChecker<L> {
         let asks = |scalars: &[PoseScalar]| scalars.iter().any(|&scalar| set.contains(scalar));
         let is_limited = self.settings().thresholds.get(PoseScalar::Clearance).is_some();
-        let bodies = match asks(&[PoseScalar::Clearance]) || is_limited {
+        let bodies = match is_limited || set.contains(PoseScalar::Clearance) {
             true => self.bodies_of(design),
             false => Bodies::unpaired(design, &self.stack_of(design), &self.body_basis()),
         };
         let mut checker = self.checker_with(design, bodies);
         let stiffness = checker.stiffness.as_ref();
-        if asks(PoseScalar::OF_LOADS) {
+        if checker.strength.is_none() && asks(PoseScalar::OF_LOADS) {
             checker.strength = stiffness.map(|stiffness| self.strength(design, stiffness));
         }
-        if asks(PoseScalar::OF_MOTION) {
+        if checker.dynamics.is_none() && asks(PoseScalar::OF_MOTION) {
             checker.dynamics = stiffness.map(|stiffness| self.dynamics(design, stiffness));
         }
         checker
