@@ -30,6 +30,9 @@ const ASTRAY: f64 = 1.0;
 /// Violation and change of the unknowns in a round, below which a search is about to end.
 const SLOW: f64 = 1e-5;
 
+/// Violation below which a search goes on, whatever its progress.
+const TRIVIAL: f64 = 1e-6;
+
 /// Residual of the multipliers at which a search has reached its end.
 const EXPLAINED: f64 = 1e-6;
 
@@ -144,6 +147,9 @@ impl<'a> Exchange<'a> {
                 // The design went past a singularity that was not known: nothing there leads back.
                 (self.unknowns, self.hessian, self.pressure) = (before, hessian, pressure);
                 span *= 0.5;
+                if known > TRIVIAL && patience.is_spent_in_vain() {
+                    break;
+                }
                 continue;
             }
             survey = found;
@@ -159,7 +165,7 @@ impl<'a> Exchange<'a> {
                 (1.5 * span).min(WIDEST)
             };
             let is_spent = patience.is_spent(missed, self.left, self.weight >= HEAVIEST);
-            let is_stuck = moved <= 1e-12 && round > 0 || missed > 1e-6 && is_spent;
+            let is_stuck = moved <= 1e-12 && round > 0 || missed > TRIVIAL && is_spent;
             // The approximation of the curvature may have grown so steep that steps stay short.
             if missed <= SLOW && moved <= SLOW && renewed < RENEWALS {
                 let found = Multipliers::new(self.problem, &self.unknowns, &survey);

@@ -43,6 +43,16 @@ impl Patience {
         let contradicts = has_largest_weight && left > 0.5 * missed && missed > CONTRADICTED * self.last;
         self.contradicted = if contradicts { self.contradicted + 1 } else { 0 };
         self.last = missed;
+        self.is_over()
+    }
+
+    /// Returns whether a search should end after a round that was taken back.
+    pub fn is_spent_in_vain(&mut self) -> bool {
+        self.since += 1;
+        self.is_over()
+    }
+
+    fn is_over(&self) -> bool {
         match self.is_quick {
             true => self.since > QUICK_PATIENCE || self.contradicted >= 2,
             false => self.since > PATIENCE,
