@@ -47,6 +47,16 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Returns the absolute value.
     fn abs(self) -> Self;
+    /// Returns a number that the absolute value nowhere exceeds, and with which it takes few operations to compute.
+    #[inline(always)]
+    fn magnitude_bound(self) -> Self {
+        self.abs()
+    }
+    /// Returns the number, which would be `value` if nothing were rounded.
+    #[inline(always)]
+    fn known_to_be(self, _value: f64) -> Self {
+        self
+    }
     /// Compares `self ≥ other`; false if either is NaN.
     fn at_least(self, other: Self) -> Self::Mask;
     /// Compares `self > other`; false if either is NaN.

@@ -31,6 +31,15 @@ pub(crate) struct MovingLeg<V> {
     pub column: [V; 3],
 }
 
+impl<V: Real> MovingLeg<V> {
+    /// Returns the moment of the line of the leg about a place.
+    #[inline(always)]
+    pub(super) fn lever(&self, place: Planar<V>) -> V {
+        let [x, y, moment] = self.wrench;
+        moment - place.cross(Planar::new(x, y))
+    }
+}
+
 impl DynamicsModel {
     /// Returns the legs at several poses at once.
     #[inline(always)]

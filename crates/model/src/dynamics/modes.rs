@@ -12,7 +12,7 @@ use super::legs::{DynamicsInputs, MovingLeg};
 use crate::lanes::{LaneJob, Planar, Real, dot, scaled, sum};
 use crate::spatial::LEGS;
 use crate::stiffness::add_bar;
-use crate::strength::path::{BARS, BarLanes, DISTAL, PLATFORM, PathJoint};
+use crate::strength::path::{BARS, BarLanes, DISTAL, End, PLATFORM, PathJoint};
 
 /// What a leg contributes to the mass in the plane, as a function of its own.
 struct LegInPlane<'a, V, C> {
@@ -107,8 +107,8 @@ impl DynamicsModel {
         let (axis, length) = (lanes.axis, lanes.length);
         let line = Planar::new(leg.wrench[0], leg.wrench[1]);
         let tip = lanes.place(length);
-        let first = leg.wrench[2] - lanes.base.cross(line);
-        let second = leg.wrench[2] - tip.cross(line);
+        let first = self.paths[0].lever(bar, End::Base, leg.lever(lanes.base));
+        let second = self.paths[0].lever(bar, End::Platform, leg.lever(tip));
         let bending = length.splat(compliance.bending);
         let stretch = length * length.splat(compliance.axial) * line.dot(axis);
         let turn = length * bending * (first + second) * length.splat(0.5);

@@ -308,6 +308,18 @@ impl Real for EnclosedNumber {
         }
     }
 
+    fn magnitude_bound(self) -> Self {
+        let [lower, upper] = self.0.range();
+        if lower.is_nan() || upper.is_nan() {
+            return Self(Self::UNKNOWN);
+        }
+        Self(TaylorModel::exactly(upper.max(-lower)))
+    }
+
+    fn known_to_be(self, value: f64) -> Self {
+        Self(TaylorModel::exactly(value))
+    }
+
     fn at_least(self, other: Self) -> Comparison {
         let difference = self.0 - other.0;
         if let Some(sign) = difference.sure_sign() {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::path::BARS;
+use super::path::{BARS, End};
 use super::resultants::{LoadedLeg, LoadedLegs, times};
 use super::{LARGEST_FACTOR, StrengthInputs, StrengthModel};
 use crate::lanes::{Planar, Real, dot};
@@ -150,8 +150,8 @@ impl StrengthModel {
             };
             let m1 = own[2] - from.cross(force) + at_from;
             let m2 = own[2] - to.cross(force) + at_to;
-            let w1 = leg.moment - from.cross(leg.u);
-            let w2 = leg.moment - to.cross(leg.u);
+            let w1 = self.paths[0].lever(bar, End::Base, leg.lever(from));
+            let w2 = self.paths[0].lever(bar, End::Platform, leg.lever(to));
             let (n, nw) = (force.dot(lanes.axis), leg.u.dot(lanes.axis));
             let axial = lanes.length * like.splat(section.axial);
             let bending = lanes.length * like.splat(section.bending);

@@ -29,7 +29,7 @@ impl StrengthModel {
     pub(super) fn joint_loads<V: Real>(&self, leg: &LoadedLeg<'_, V>, index: usize, joint: usize) -> JointLoads<V> {
         let place = leg.path.joints[joint];
         let beyond = self.beyond_joint(leg.path, &leg.from, index, joint);
-        let carried = self.resultants(leg, place, &beyond);
+        let carried = self.resultants(leg, (place, leg.lever(place)), &beyond);
         let (u, normal) = (leg.u, leg.u.perp());
         let along = self.about(leg, place, carried.moment, u);
         let across = self.about(leg, place, carried.moment, normal);

@@ -64,6 +64,8 @@ pub(crate) struct LegLoadPath<V> {
     pub proximal: Option<(Planar<V>, V)>,
     /// Unit vectors along which the prismatic joints move the platform, in the distal axes.
     pub guides: [Option<Planar<V>>; 3],
+    /// Unit vector along the rail of a prismatic joint at the base, if it need not follow from the distal axes.
+    pub rail: Option<Planar<V>>,
     /// `u_i`.
     pub u: Planar<V>,
     /// Moment of the leg's line about `P` \[m\].
@@ -90,6 +92,7 @@ impl<V: Real> LegLoadPath<V> {
             offset: chain.offset,
             proximal,
             guides: chain.guides,
+            rail: None,
             u: leg.u,
             moment: leg.moment,
             transmission: leg.transmission,
@@ -305,17 +308,19 @@ impl StrengthModel {
     }
 
     /// Returns what the limits of a set bound from above at several poses at once, in the order of [`StrengthValue`]: the stress for the
-    /// safety factor, and the reciprocal of the factor against buckling; for all others, the worst number, which is infinite.
+    /// safety factor, and the reciprocal of the factor against buckling; for all others, the worst number, which is infinite. Bars that nowhere exceed the
+    /// stress `kept` are left out.
     #[inline(always)]
     fn demands<V: Real>(
         &self,
         loaded: &LoadedLegs<'_, V>,
         inputs: &StrengthInputs<V>,
         set: StrengthSet,
+        kept: Option<f64>,
     ) -> [V; StrengthValue::COUNT] {
         let mut found = StrengthValue::none(inputs.legs[0].moment);
         if set.contains_any([StrengthValue::Stress, StrengthValue::SafetyFactor]) {
-            let stress = self.largest_stress(&loaded.legs);
+            let stress = self.largest_stress(&loaded.legs, kept);
             found[StrengthValue::Stress as usize] = stress;
             found[StrengthValue::SafetyFactor as usize] = stress;
         }
@@ -336,15 +341,18 @@ impl StrengthModel {
         found
     }
 
-    /// Encloses what the limits of a set bound from above over a box of poses, as [`StrengthModel::demands`].
+    /// Encloses what the limits of a set bound from above over a box of poses, as [`StrengthModel::demands`]. The stress `kept`
+    /// is one that the limits allow: a smaller one may be enclosed too low, because bars that nowhere exceed it are left out.
     pub fn enclose(
         &self,
         inputs: &StrengthInputs<EnclosedNumber>,
         set: StrengthSet,
+        kept: Option<f64>,
     ) -> [TaylorModel; StrengthValue::COUNT] {
         let paths = self.paths_at(inputs);
         let legs = self.legs(inputs, &paths);
-        self.demands(&self.loaded(&legs), inputs, set).map(|number| number.0)
+        self.demands(&self.loaded(&legs), inputs, set, kept)
+            .map(|number| number.0)
     }
 
     /// Returns the largest demand with which a value keeps its limit; `None` if the design has no such value, or none as good.
@@ -373,7 +381,7 @@ impl StrengthModel {
         set: StrengthSet,
     ) -> [V; StrengthValue::COUNT] {
         let like = inputs.legs[0].moment;
-        let mut found = self.demands(loaded, inputs, set);
+        let mut found = self.demands(loaded, inputs, set, None);
         if set.contains_any([StrengthValue::Stress, StrengthValue::SafetyFactor]) {
             let stress = &mut found[StrengthValue::SafetyFactor as usize];
             *stress = self.safety_factor(*stress);

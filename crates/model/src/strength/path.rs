@@ -33,12 +33,12 @@ pub(crate) struct BarSection {
     pub mass_per_length: f64,
 }
 
-/// End of a bar from which a position is measured.
+/// End of a bar, from which positions are measured into the bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
-    /// The end at the base, along the bar.
+pub(crate) enum End {
+    /// The end at the base.
     Base,
-    /// The end at the platform, against the bar.
+    /// The end at the platform.
     Platform,
 }
 
@@ -202,6 +202,9 @@ impl LegPath {
                 slides[place] = into_base(tangent, guide);
             }
         }
+        if let Some(rail) = leg.rail {
+            slides[0] = rail;
+        }
         PathLanes { bars, joints, slides }
     }
 
@@ -216,6 +219,39 @@ impl LegPath {
             let slide = path.slides[joint];
             [slide.x, slide.y, like.splat(0.0)]
         }
+    }
+
+    /// Returns the moment of the line of the leg about an end of a bar, given as it follows from the coordinates: it is 0 at a passive
+    /// revolute joint, through which the line passes.
+    #[inline(always)]
+    pub fn lever<V: Real>(&self, bar: usize, end: End, lever: V) -> V {
+        match self.is_free(bar, end) {
+            true => lever.known_to_be(0.0),
+            false => lever,
+        }
+    }
+
+    /// Returns whether the line of the leg passes through both ends of a bar.
+    #[inline(always)]
+    pub fn is_on_line(&self, bar: usize) -> bool {
+        self.is_free(bar, End::Base) && self.is_free(bar, End::Platform)
+    }
+
+    /// Returns whether a passive revolute joint is at an end of a bar.
+    #[inline(always)]
+    fn is_free(&self, bar: usize, end: End) -> bool {
+        let place = match end {
+            End::Base => bar,
+            End::Platform => bar + 1,
+        };
+        // A leg without a first bar begins with the second one.
+        let at = |joint: &PathJoint| match joint.point {
+            JointPoint::A => self.first,
+            JointPoint::B => DISTAL,
+            JointPoint::C => PLATFORM,
+        };
+        let is_passive = |joint: &&PathJoint| joint.kind == JointKind::Revolute && !joint.is_driven;
+        self.joints.iter().filter(is_passive).any(|joint| at(joint) == place)
     }
 
     /// Returns whether a joint is revolute.

@@ -13,12 +13,12 @@ pub(super) struct Ranged<V> {
 }
 
 impl<V: Real> Ranged<V> {
-    /// Returns the largest magnitude and the largest range of two.
+    /// Returns bounds of the magnitude and of the range.
     #[inline(always)]
-    pub fn hull(self, other: Self) -> Self {
+    pub fn bound(self) -> Self {
         Self {
-            value: self.value.abs().larger(other.value.abs()),
-            range: self.range.larger(other.range),
+            value: self.value.magnitude_bound(),
+            range: self.range.magnitude_bound(),
         }
     }
 
@@ -262,17 +262,16 @@ impl StrengthModel {
         }
     }
 
-    /// Returns the resultants at a place, relative to `P`, beyond which there is a mass.
+    /// Returns the resultants at a place, relative to `P`, beyond which there is a mass; `lever` is the moment of the line about the place.
     #[inline(always)]
     pub(super) fn resultants<V: Real>(
         &self,
         leg: &LoadedLeg<'_, V>,
-        place: Planar<V>,
+        (place, lever): (Planar<V>, V),
         beyond: &Beyond<V>,
     ) -> Resultants<V> {
         let [fx, fy, turn] = leg.own;
         let line = leg.line.value;
-        let lever = leg.moment - place.cross(leg.u);
         let mut force = leg.u.scaled(line).plus(Planar::new(fx, fy));
         let mut about = line * lever + turn - (place.x * fy - place.y * fx);
         // The arm from the place to `P`, turned as a force along z turns it.
@@ -384,6 +383,14 @@ const GAUSS: f64 = 0.577_350_269_189_625_8;
 #[inline(always)]
 fn row<V: Real>(leg: &LegBasis<'_, V>) -> [V; 3] {
     [leg.u.x, leg.u.y, leg.moment]
+}
+
+impl<V: Real> LegBasis<'_, V> {
+    /// Returns the moment of the line about a place.
+    #[inline(always)]
+    pub(super) fn lever(&self, place: Planar<V>) -> V {
+        self.moment - place.cross(self.u)
+    }
 }
 
 impl<V: Real> LoadedLeg<'_, V> {

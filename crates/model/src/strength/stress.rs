@@ -1,6 +1,6 @@
 //! Stress in the bars at several poses at once (docs/model.md, sections 14.2 and 14.6).
 
-use super::path::{BARS, BarSection};
+use super::path::{BARS, BarSection, End};
 use super::resultants::{LoadedLeg, Ranged};
 use super::{LoadShape, StrengthModel};
 use crate::lanes::{Planar, Real};
@@ -19,6 +19,19 @@ pub(super) struct SectionLoads<V> {
     pub out_of_plane: Ranged<V>,
     /// Torsion \[N·m\].
     pub torsion: Ranged<V>,
+}
+
+impl<V: Real> SectionLoads<V> {
+    /// Returns bounds of all magnitudes and ranges.
+    #[inline(always)]
+    fn bound(&self) -> Self {
+        Self {
+            axial: self.axial.bound(),
+            in_plane: self.in_plane.bound(),
+            out_of_plane: self.out_of_plane.bound(),
+            torsion: self.torsion.bound(),
+        }
+    }
 }
 
 /// What a bar carries at its end at the platform, without its own weight. Towards the base, the moments change in proportion to the
@@ -50,17 +63,26 @@ impl StrengthModel {
     pub(super) fn bar_loads<V: Real>(&self, leg: &LoadedLeg<'_, V>, bar: usize) -> BarLoads<V> {
         let lanes = &leg.path.bars[bar];
         let end = lanes.place(lanes.length);
-        let carried = self.resultants(leg, end, &leg.from[bar + 1]);
+        let lever = self.paths[0].lever(bar, End::Platform, leg.lever(end));
+        let carried = self.resultants(leg, (end, lever), &leg.from[bar + 1]);
         let (axis, normal) = (lanes.axis, lanes.axis.perp());
+        let (mut shear, mut lever_slope) = (carried.force.dot(normal), leg.u.dot(normal));
+        if self.paths[0].is_on_line(bar) {
+            lever_slope = lever_slope.known_to_be(0.0);
+            let [is_loaded_across, _] = self.loads.weighs();
+            if !is_loaded_across {
+                shear = shear.known_to_be(0.0);
+            }
+        }
         BarLoads {
             axial: Ranged {
                 value: carried.force.dot(axis),
                 range: leg.u.dot(axis).abs() * leg.line.range,
             },
-            shear: carried.force.dot(normal),
+            shear,
             in_plane: carried.turn.value,
-            lever: leg.moment - end.cross(leg.u),
-            lever_slope: leg.u.dot(normal),
+            lever,
+            lever_slope,
             lift: carried.lift.value,
             out_of_plane: carried.moment.dot(normal),
             out_of_plane_by: leg.moment_by(end, normal),
@@ -159,32 +181,38 @@ impl StrengthModel {
         }
     }
 
-    /// Returns an upper bound of the squared stress between the ends of a bar \[Pa²\]: between them, a moment differs from a line by
-    /// at most `q L²/8`, where `q` is the largest weight per length.
+    /// Returns an upper bound of the squared stress anywhere in a bar \[Pa²\]: between the ends, a moment differs from a line by at most
+    /// `q L²/8`, where `q` is the largest weight per length. The squared stress is convex, so that it is largest at an end where the moments
+    /// there are larger by as much.
     #[inline(always)]
-    fn bound_between<V: Real>(&self, leg: &LoadedLeg<'_, V>, bar: usize, ends: &[SectionLoads<V>; 2]) -> V {
+    fn bound_of_bar<V: Real>(&self, leg: &LoadedLeg<'_, V>, bar: usize, ends: &[SectionLoads<V>; 2]) -> V {
         let lanes = &leg.path.bars[bar];
         let [x, y, z] = self.loads.gravity;
         let gravity = Planar::new(lanes.length.splat(x), lanes.length.splat(y));
         let [first, second] = &lanes.pieces;
-        let eighth = lanes.length * lanes.length * lanes.length.splat((first.density + second.density) / 8.0);
-        let across = gravity.dot(lanes.axis.perp()).abs();
-        let [a, b] = ends;
-        let mut bound = SectionLoads {
-            axial: a.axial.hull(b.axial),
-            in_plane: a.in_plane.hull(b.in_plane),
-            out_of_plane: a.out_of_plane.hull(b.out_of_plane),
-            torsion: a.torsion,
-        };
-        bound.in_plane.value = bound.in_plane.value + eighth * across;
-        bound.out_of_plane.value = bound.out_of_plane.value + eighth * lanes.length.splat(z.abs());
+        let length = lanes.length.magnitude_bound();
+        let eighth = length * length * length.splat((first.density + second.density) / 8.0);
+        let in_plane = eighth * gravity.dot(lanes.axis.perp()).magnitude_bound();
+        let out_of_plane = eighth * length.splat(z.abs());
+        let [mut base, mut platform] = [ends[0].bound(), ends[1].bound()];
+        // The force along the bar need not change in proportion to the distance.
+        let axial = base.axial.value.larger(platform.axial.value);
+        for end in [&mut base, &mut platform] {
+            end.axial.value = axial;
+            end.in_plane.value = end.in_plane.value + in_plane;
+            end.out_of_plane.value = end.out_of_plane.value + out_of_plane;
+        }
+        let bound = self
+            .squared_stress(bar, &base)
+            .larger(self.squared_stress(bar, &platform));
         // The factor covers rounding.
-        self.squared_stress(bar, &bound) * lanes.length.splat(1.0 + 1e-9)
+        bound * length.splat(1.0 + 1e-9)
     }
 
-    /// Returns the largest stress of any bar \[Pa\]; a guide whose carriage is at its joint has none.
+    /// Returns the largest stress of any bar \[Pa\]; a guide whose carriage is at its joint has none. Bars that nowhere exceed
+    /// the stress `kept` are left out.
     #[inline(always)]
-    pub(super) fn largest_stress<V: Real>(&self, legs: &[LoadedLeg<'_, V>]) -> V {
+    pub(super) fn largest_stress<V: Real>(&self, legs: &[LoadedLeg<'_, V>], kept: Option<f64>) -> V {
         let zero = legs[0].moment.splat(0.0);
         let mut most = zero;
         for leg in legs {
@@ -195,10 +223,19 @@ impl StrengthModel {
                     self.section_loads(leg, bar, &loads, 0),
                     self.section_loads(leg, bar, &loads, last),
                 ];
+                let bound = match last > 1 || kept.is_some() {
+                    true => self.bound_of_bar(leg, bar, &ends),
+                    false => zero,
+                };
+                if let Some(kept) = kept
+                    && !V::any(bound.exceeds(zero.splat(kept) * zero.splat(kept)))
+                {
+                    continue;
+                }
                 let mut of_bar = zero.larger(self.squared_stress(bar, &ends[0]));
                 of_bar = of_bar.larger(self.squared_stress(bar, &ends[1]));
                 // Most bars are loaded most at an end, or less than another bar wherever they are loaded most.
-                if last > 1 && V::any(self.bound_between(leg, bar, &ends).exceeds(most.larger(of_bar))) {
+                if last > 1 && V::any(bound.exceeds(most.larger(of_bar))) {
                     for section in 1..last {
                         let carried = self.section_loads(leg, bar, &loads, section);
                         of_bar = of_bar.larger(self.squared_stress(bar, &carried));

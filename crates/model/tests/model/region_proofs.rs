@@ -207,6 +207,9 @@ fn each_limit_ends_the_proof_of_a_region() {
         PoseScalar::Transmission,
         PoseScalar::Displacement,
         PoseScalar::Clearance,
+        PoseScalar::Stress,
+        PoseScalar::BucklingFactor,
+        PoseScalar::NaturalFrequency,
     ] {
         let limited = |limit: f64| {
             strategies::model(|settings| {
@@ -219,7 +222,7 @@ fn each_limit_ends_the_proof_of_a_region() {
         let values = random_poses(&open, phi_deg, 4000)
             .into_iter()
             .map(|pose| open.pose(&design, &pose).expect("a pose").values[scalar]);
-        let is_lower_better = scalar == PoseScalar::Displacement;
+        let is_lower_better = matches!(scalar, PoseScalar::Displacement | PoseScalar::Stress);
         let worst = if is_lower_better {
             values.fold(f64::NEG_INFINITY, f64::max)
         } else {

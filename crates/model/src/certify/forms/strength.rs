@@ -3,7 +3,7 @@
 //! They are not written apart from the formulas of the evaluation, which are many: the same formulas run on enclosed numbers. What
 //! these begin with, the legs and their compliances, is that of the other forms.
 
-use super::{Enclosures, Forms};
+use super::{Enclosures, Forms, Order};
 use crate::enclosure::{EnclosedNumber, Interval, PlanarModel, TaylorModel};
 use crate::evaluation::{Model, PoseScalar};
 use crate::lanes::{Planar, Real};
@@ -55,6 +55,11 @@ impl StrengthForms {
             limits,
         })
     }
+
+    /// Returns the scalars that are limited.
+    pub fn scalars(&self) -> impl Iterator<Item = PoseScalar> {
+        self.limits.iter().map(|limit| limit.scalar)
+    }
 }
 
 impl LoadForms {
@@ -84,6 +89,7 @@ impl LoadForms {
                 (planar(bar.direction), EnclosedNumber(share))
             }),
             guides: [guide(first), guide(second), guide(third)],
+            rail: first.map(|_| planar(frame.rail.axis().map(TaylorModel::constant))),
             u: planar(leg.u),
             moment: EnclosedNumber(leg.moment.scaled(self.platform_radius)),
             transmission: EnclosedNumber(root(leg.transmission_square).scaled(self.lever)),
@@ -93,8 +99,12 @@ impl LoadForms {
 
 impl Forms<'_> {
     /// Encloses by how much the demands of the strength are below their limits.
-    pub(super) fn enclose_strength(&self, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
-        let Some(strength) = &self.strength else { return };
+    pub(super) fn enclose_strength(
+        &self,
+        strength: &StrengthForms,
+        legs: &[LegEnclosure; LEGS],
+        (order, found): (Order, &mut Enclosures),
+    ) {
         let open = || strength.limits.iter().filter(|limit| found.needs(limit.scalar));
         let set = open()
             .map(|limit| limit.value)
@@ -102,7 +112,14 @@ impl Forms<'_> {
         if set.is_empty() {
             return;
         }
-        let demands = strength.model.enclose(&self.load_inputs(legs), set);
+        // Of a box that is divided if a limit is open, nothing but that matters.
+        let stress = open().filter(|limit| matches!(limit.value, StrengthValue::Stress | StrengthValue::SafetyFactor));
+        let kept = stress
+            .filter_map(|limit| limit.demand)
+            .map(|most| most.lower())
+            .reduce(f64::min)
+            .filter(|_| order == Order::InTurn);
+        let demands = strength.model.enclose(&self.load_inputs(legs), set, kept);
         let forms: Vec<(PoseScalar, TaylorModel)> = open()
             .map(|limit| {
                 let form = match limit.demand {
