@@ -131,7 +131,7 @@ impl<'a> Examiner<'a> {
             cosine: phi_cosine,
             sine: phi_sine,
         };
-        self.forms.enclose_in_turn(&pose, part.proved)
+        self.forms.enclose_limits(&pose, part.proved)
     }
 
     /// The pose at a point of a patch, within the window.
@@ -300,7 +300,7 @@ impl<'a> Examiner<'a> {
             shown.boxes += 1;
             let found = self.enclose_box(&part);
             let open: Vec<&(PoseScalar, TaylorModel)> = found.open().collect();
-            if found.are_proved() {
+            if found.is_complete && open.is_empty() {
                 let decisive = weakest(found.iter().filter(|_| self.is_watched));
                 return self.told(shown, &part, BoxOutcome::Proved, decisive);
             }

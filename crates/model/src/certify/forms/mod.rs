@@ -58,7 +58,7 @@ impl ProvedForms {
             !holds
         });
         let fails: ScalarSet = fails.map(|(scalar, _)| *scalar).collect();
-        Self(self.0.or(fails.or(found.put_off).complement()))
+        Self(self.0.or(fails.complement()))
     }
 
     /// Whether every constraint is proved.
@@ -78,7 +78,6 @@ impl ProvedForms {
             return self;
         }
         let open: ScalarSet = found.open().map(|(scalar, _)| *scalar).collect();
-        let open = open.or(found.put_off);
         // What a leg reaches is part of every other constraint, and is enclosed in any case.
         Self(self.0.or(open.with(PoseScalar::Reach).complement()))
     }
@@ -90,8 +89,6 @@ pub(super) struct Enclosures {
     values: Vec<(PoseScalar, TaylorModel)>,
     /// Places of the values that are not proved to be positive.
     open: Vec<usize>,
-    /// Constraints that are open without a value.
-    put_off: ScalarSet,
     /// Whether every constraint could be evaluated: where a leg may not reach, the others have no value.
     pub is_complete: bool,
     /// Whether the forms tell of every part of the box by themselves, so that parts on which they are positive may be cut off.
@@ -105,7 +102,6 @@ impl Enclosures {
         Self {
             values: Vec::with_capacity(3 * LEGS + 8),
             open: Vec::new(),
-            put_off: ScalarSet::default(),
             is_complete: true,
             may_contract: true,
             proved,
@@ -119,24 +115,6 @@ impl Enclosures {
         self.values.push((scalar, value));
     }
 
-    /// Leaves constraints open without a value, apart from those that are proved.
-    fn put_off(&mut self, scalars: impl IntoIterator<Item = PoseScalar>) {
-        let added: ScalarSet = scalars.into_iter().filter(|scalar| self.needs(*scalar)).collect();
-        self.put_off = self.put_off.or(added);
-        // Nothing is known of any part of the box.
-        self.may_contract &= self.put_off.is_empty();
-    }
-
-    /// Whether every constraint is proved.
-    pub fn are_proved(&self) -> bool {
-        self.is_complete && !self.are_open()
-    }
-
-    /// Whether a constraint is open.
-    fn are_open(&self) -> bool {
-        !self.open.is_empty() || !self.put_off.is_empty()
-    }
-
     fn count(&self) -> usize {
         self.values.len()
     }
@@ -145,7 +123,7 @@ impl Enclosures {
         !self.proved.contains(scalar)
     }
 
-    /// The constraints with a value that are not proved.
+    /// The constraints that are not proved, with their values.
     pub fn open(&self) -> impl Iterator<Item = &(PoseScalar, TaylorModel)> {
         self.open.iter().map(|&place| &self.values[place])
     }
@@ -162,19 +140,13 @@ impl Enclosures {
     }
 }
 
-/// In which order constraints are enclosed.
+/// How closely constraints are enclosed.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Order {
-    /// All of them.
-    AtOnce,
-    /// Those that take long, only where no other one is open, and no closer than to tell whether they hold.
-    InTurn,
-}
-
-impl Order {
-    fn puts_off(self, found: &Enclosures) -> bool {
-        self == Order::InTurn && found.are_open()
-    }
+enum Detail {
+    /// The enclosures contain the values.
+    Values,
+    /// The enclosures tell where the constraints hold, and need not contain values that are better than the limit.
+    Limits,
 }
 
 /// The constraints of one design, prepared for many boxes.
@@ -235,26 +207,26 @@ impl<'a> Forms<'a> {
     /// Encloses the constraints over a box of poses, but for those that are proved there: a constraint holds where all its values are
     /// positive.
     pub fn enclose(&self, pose: &PoseEnclosure, proved: ProvedForms) -> Enclosures {
-        self.enclose_with(pose, proved, (Order::AtOnce, Separations::enclose))
+        self.enclose_with(pose, proved, (Detail::Values, Separations::enclose))
     }
 
-    /// Encloses the constraints over a box of poses that is divided if one of them is open: those that take long are put off then.
-    pub fn enclose_in_turn(&self, pose: &PoseEnclosure, proved: ProvedForms) -> Enclosures {
-        self.enclose_with(pose, proved, (Order::InTurn, Separations::enclose))
+    /// Encloses the constraints over a box of poses, but for those that are proved there, no closer than it takes to tell where they hold.
+    pub fn enclose_limits(&self, pose: &PoseEnclosure, proved: ProvedForms) -> Enclosures {
+        self.enclose_with(pose, proved, (Detail::Limits, Separations::enclose))
     }
 
     /// Encloses the constraints over a box without width, but for those that are proved there, and for limits that take long and that plain
     /// numbers keep: each value is negative only where the constraint is violated.
     pub fn enclose_pose(&self, pose: &PoseEnclosure, proved: ProvedForms) -> Enclosures {
         let proved = self.with_those_kept_at(proved, pose);
-        self.enclose_with(pose, proved, (Order::AtOnce, Separations::enclose_pose))
+        self.enclose_with(pose, proved, (Detail::Values, Separations::enclose_pose))
     }
 
     fn enclose_with(
         &self,
         pose: &PoseEnclosure,
         proved: ProvedForms,
-        (order, separate): (Order, fn(&Separations, &MemberBoxes, &mut Enclosures)),
+        (detail, separate): (Detail, fn(&Separations, &MemberBoxes, &mut Enclosures)),
     ) -> Enclosures {
         let mut found = Enclosures::new(proved);
         let legs = enclose_legs(self.model, self.design, &self.frames, pose);
@@ -281,29 +253,11 @@ impl<'a> Forms<'a> {
             found.is_complete = has_values;
             if has_values {
                 self.enclose_reach(pose, &legs, &mut found);
-                self.enclose_slow(pose, &legs, (order, &mut found));
+                self.enclose_strength(&legs, (detail, &mut found));
+                self.enclose_motion(pose, &legs, &mut found);
             }
         }
         found
-    }
-
-    /// Encloses the constraints that take long.
-    fn enclose_slow(
-        &self,
-        pose: &PoseEnclosure,
-        legs: &[LegEnclosure; LEGS],
-        (order, found): (Order, &mut Enclosures),
-    ) {
-        match &self.strength {
-            Some(strength) if order.puts_off(found) => found.put_off(strength.scalars()),
-            Some(strength) => self.enclose_strength(strength, legs, (order, found)),
-            None => {}
-        }
-        match &self.motion {
-            Some(motion) if order.puts_off(found) => found.put_off(motion.scalars()),
-            Some(motion) => self.enclose_motion(motion, (pose, legs), (order, found)),
-            None => {}
-        }
     }
 
     /// The limit of a scalar; 0 without one.

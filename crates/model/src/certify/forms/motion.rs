@@ -1,10 +1,8 @@
 //! Forms of the limits on natural frequencies, errors of the pose, and the speeds and forces of actuators in motion (docs/model.md,
 //! section 13.3). The formulas of the evaluation run on enclosed numbers, as those of the strength do.
 
-use std::cell::LazyCell;
-
 use super::strength::{in_other_axes, planar};
-use super::{Enclosures, Forms, Order};
+use super::{Enclosures, Forms};
 use crate::dynamics::{DynamicsInputs, DynamicsModel, MotionValue};
 use crate::enclosure::{EnclosedNumber, Interval, PoseEnclosure, TaylorModel};
 use crate::evaluation::{Model, PoseScalar};
@@ -14,7 +12,6 @@ use crate::spatial::{LEGS, inverse_factor};
 /// What the limits of a motion need of a design.
 pub(super) struct MotionForms {
     model: DynamicsModel,
-    /// Those that take the fewest operations first.
     limits: Vec<(PoseScalar, MotionValue, f64)>,
 }
 
@@ -23,10 +20,9 @@ impl MotionForms {
     pub fn new(model: &Model, design: &Design) -> Option<Self> {
         let thresholds = model.thresholds_of(design);
         let limits = thresholds.iter();
-        let mut limits: Vec<_> = limits
+        let limits: Vec<_> = limits
             .filter_map(|(scalar, limit)| Some((scalar, scalar.of_motion()?, limit)))
             .collect();
-        limits.sort_by_key(|(_, value, _)| MotionValue::ALL.iter().position(|other| other == value));
         if limits.is_empty() {
             return None;
         }
@@ -35,40 +31,32 @@ impl MotionForms {
             limits,
         })
     }
-
-    /// Returns the scalars that are limited.
-    pub fn scalars(&self) -> impl Iterator<Item = PoseScalar> {
-        self.limits.iter().map(|(scalar, ..)| *scalar)
-    }
 }
 
 impl Forms<'_> {
     /// Encloses by how much the values of a motion keep their limits.
-    pub(super) fn enclose_motion(
-        &self,
-        motion: &MotionForms,
-        (pose, legs): (&PoseEnclosure, &[LegEnclosure; LEGS]),
-        (order, found): (Order, &mut Enclosures),
-    ) {
-        if !motion.scalars().any(|scalar| found.needs(scalar)) {
+    pub(super) fn enclose_motion(&self, pose: &PoseEnclosure, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
+        let Some(motion) = &self.motion else { return };
+        let open = |scalar: PoseScalar| found.needs(scalar);
+        let open: Vec<_> = motion.limits.iter().filter(|(scalar, ..)| open(*scalar)).collect();
+        if open.is_empty() {
             return;
         }
         let inputs = DynamicsInputs {
             position: planar(pose.position),
             legs: self.load_inputs(legs),
         };
-        let legs = LazyCell::new(|| motion.model.legs(&inputs));
-        for &(scalar, value, limit) in &motion.limits {
-            if !found.needs(scalar) {
-                continue;
-            }
-            if order.puts_off(found) {
-                found.put_off([scalar]);
-            } else if !self.model.has(self.design, scalar) {
+        let legs = motion.model.legs(&inputs);
+        for &&(scalar, value, limit) in &open {
+            if !self.model.has(self.design, scalar) {
                 found.push(scalar, TaylorModel::exactly(-1.0));
             } else if value == MotionValue::NaturalFrequency {
-                let above = motion.model.enclose_stiffness_above(&inputs, &legs, limit);
-                for form in above.into_iter().flat_map(minors) {
+                for form in motion
+                    .model
+                    .enclose_stiffness_above(&inputs, &legs, limit)
+                    .into_iter()
+                    .flat_map(minors)
+                {
                     found.push(scalar, form);
                 }
             } else {

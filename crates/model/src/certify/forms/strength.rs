@@ -3,7 +3,7 @@
 //! They are not written apart from the formulas of the evaluation, which are many: the same formulas run on enclosed numbers. What
 //! these begin with, the legs and their compliances, is that of the other forms.
 
-use super::{Enclosures, Forms, Order};
+use super::{Detail, Enclosures, Forms};
 use crate::enclosure::{EnclosedNumber, Interval, PlanarModel, TaylorModel};
 use crate::evaluation::{Model, PoseScalar};
 use crate::lanes::{Planar, Real};
@@ -55,11 +55,6 @@ impl StrengthForms {
             limits,
         })
     }
-
-    /// Returns the scalars that are limited.
-    pub fn scalars(&self) -> impl Iterator<Item = PoseScalar> {
-        self.limits.iter().map(|limit| limit.scalar)
-    }
 }
 
 impl LoadForms {
@@ -99,12 +94,8 @@ impl LoadForms {
 
 impl Forms<'_> {
     /// Encloses by how much the demands of the strength are below their limits.
-    pub(super) fn enclose_strength(
-        &self,
-        strength: &StrengthForms,
-        legs: &[LegEnclosure; LEGS],
-        (order, found): (Order, &mut Enclosures),
-    ) {
+    pub(super) fn enclose_strength(&self, legs: &[LegEnclosure; LEGS], (detail, found): (Detail, &mut Enclosures)) {
+        let Some(strength) = &self.strength else { return };
         let open = || strength.limits.iter().filter(|limit| found.needs(limit.scalar));
         let set = open()
             .map(|limit| limit.value)
@@ -112,13 +103,12 @@ impl Forms<'_> {
         if set.is_empty() {
             return;
         }
-        // Of a box that is divided if a limit is open, nothing but that matters.
         let stress = open().filter(|limit| matches!(limit.value, StrengthValue::Stress | StrengthValue::SafetyFactor));
         let kept = stress
             .filter_map(|limit| limit.demand)
             .map(|most| most.lower())
             .reduce(f64::min)
-            .filter(|_| order == Order::InTurn);
+            .filter(|_| detail == Detail::Limits);
         let demands = strength.model.enclose(&self.load_inputs(legs), set, kept);
         let forms: Vec<(PoseScalar, TaylorModel)> = open()
             .map(|limit| {
