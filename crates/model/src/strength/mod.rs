@@ -308,8 +308,8 @@ impl StrengthModel {
     }
 
     /// Returns what the limits of a set bound from above at several poses at once, in the order of [`StrengthValue`]: the stress for the
-    /// safety factor, and the reciprocal of the factor against buckling; for all others, the worst number, which is infinite. Bars that nowhere exceed the
-    /// stress `kept` are left out.
+    /// safety factor, and the reciprocal of the factor against buckling; for all others, the worst number, which is infinite. Bars that
+    /// nowhere exceed the stress `kept` are left out.
     #[inline(always)]
     fn demands<V: Real>(
         &self,

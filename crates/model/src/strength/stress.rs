@@ -182,8 +182,8 @@ impl StrengthModel {
     }
 
     /// Returns an upper bound of the squared stress anywhere in a bar \[Pa²\]: between the ends, a moment differs from a line by at most
-    /// `q L²/8`, where `q` is the largest weight per length. The squared stress is convex, so that it is largest at an end where the moments
-    /// there are larger by as much.
+    /// `q L²/8`, where `q` is the largest weight per length. The squared stress is convex, so that it nowhere exceeds that of an end at which both
+    /// moments are larger by as much.
     #[inline(always)]
     fn bound_of_bar<V: Real>(&self, leg: &LoadedLeg<'_, V>, bar: usize, ends: &[SectionLoads<V>; 2]) -> V {
         let lanes = &leg.path.bars[bar];
