@@ -75,3 +75,18 @@ pub struct Document {
     /// The filter.
     pub filter: Filter,
 }
+
+impl Document {
+    /// Returns the id of the selected design, if it is one of the run.
+    pub fn selected_id(&self) -> Option<usize> {
+        match self.selected.as_ref()?.origin {
+            DesignOrigin::Evaluated(id) => Some(id),
+            _ => None,
+        }
+    }
+
+    /// Returns the selected design.
+    pub fn selected_design(&self) -> Option<Design> {
+        self.selected.as_ref().map(|selected| selected.design)
+    }
+}

@@ -11,7 +11,7 @@ use kinefront_scene::text;
 use kinefront_study::{CertifiedWorkspace, Column, Study};
 
 use self::order::{Listing, Order, SortKey, active};
-use crate::{DesignOrigin, FrontEntry, Session, theme};
+use crate::{FrontEntry, Session, theme};
 use kinefront_model::evaluation::{PoseScalar, Quantity};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 
@@ -89,10 +89,7 @@ impl FrontPanel {
             return;
         }
         self.order.update(session, &self.listing);
-        let selected = match session.document().selected.as_ref().map(|selected| &selected.origin) {
-            Some(DesignOrigin::Evaluated(id)) => Some(*id),
-            _ => None,
-        };
+        let selected = session.document().selected_id();
         let mut clicked = Clicked::default();
         egui::ScrollArea::horizontal()
             .auto_shrink([false, false])

@@ -8,7 +8,7 @@ use kinefront_model::mechanism::Architecture;
 use kinefront_scene::text;
 use kinefront_study::{Column, DriversAlong, ParameterKind, PriceCurve, stacked, usual_range};
 
-use crate::{DesignOrigin, Session, theme};
+use crate::{Session, theme};
 
 /// Least price that is drawn \[% for 1 %\].
 const DRAWN: f64 = 0.02;
@@ -77,9 +77,8 @@ impl PricesPanel {
     }
 
     fn show(&mut self, ui: &mut Ui, session: &mut Session, all: &[DriversAlong], answer: &Answer) {
-        let selected = session.document().selected.as_ref();
-        let selected = selected.map(|selected| selected.design.architecture());
-        let wanted = self.architecture.or(selected);
+        let selected = session.document().selected_design();
+        let wanted = self.architecture.or(selected.map(|design| design.architecture()));
         let has_prices = |along: &&DriversAlong| !along.designs.is_empty();
         let of_wanted = all
             .iter()
@@ -239,13 +238,9 @@ fn lines(plot: &mut PlotUi<'_>, curves: &[PriceCurve]) {
 
 /// Returns where the selected design of the run is along the front.
 fn place_of_selected(session: &Session, along: &DriversAlong) -> Option<f64> {
-    let selected = session.document().selected.as_ref()?;
-    let DesignOrigin::Evaluated(id) = selected.origin else {
-        return None;
-    };
-    if selected.design.architecture() != along.architecture {
-        return None;
-    }
+    let document = session.document();
+    let is_along = document.selected_design()?.architecture() == along.architecture;
+    let id = document.selected_id().filter(|_| is_along)?;
     session.number(id, Column::Quantity(along.along))
 }
 

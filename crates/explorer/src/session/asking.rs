@@ -118,7 +118,7 @@ impl Session {
 
     /// States a wish about the selected design.
     pub fn wish(&mut self, wish: Wish) {
-        let Some(design) = self.document().selected.as_ref().map(|selected| selected.design) else {
+        let Some(design) = self.document().selected_design() else {
             return;
         };
         self.asking.wishes += 1;

@@ -359,7 +359,7 @@ impl Session {
         let motion = self.shown_motion();
         let bent = self.bent();
         let document = self.history.present();
-        let design = document.selected.as_ref().map(|selected| selected.design);
+        let design = document.selected_design();
         let request = Request {
             study: Arc::clone(&self.as_run),
             verified: design.and_then(|design| self.verified(&design)),

@@ -334,11 +334,8 @@ impl Session {
 
     /// Returns the proof of the workspace of the selected design, once it is known.
     pub fn proof(&self) -> Option<&Arc<WorkspaceProof>> {
-        let selected = self.document().selected.as_ref()?;
-        self.answer
-            .proof
-            .as_ref()
-            .filter(|proof| proof.design == selected.design)
+        let design = self.document().selected_design()?;
+        self.answer.proof.as_ref().filter(|proof| proof.design == design)
     }
 
     /// Returns the summary of each generation.
@@ -394,17 +391,15 @@ impl Session {
 
     /// Returns the evaluation of the selected design, if it is known.
     pub fn known(&self) -> Option<&Known> {
-        let selected = self.document().selected.as_ref()?;
-        self.answer
-            .known
-            .as_ref()
-            .filter(|known| known.evaluation.design == selected.design)
+        let design = self.document().selected_design()?;
+        let known = self.answer.known.as_ref();
+        known.filter(|known| known.evaluation.design == design)
     }
 
     /// Returns the fields that have values for the selected design, or all without one.
     pub fn fields(&self) -> Vec<Field> {
-        match &self.document().selected {
-            Some(selected) => Field::of(self.model(), &selected.design).collect(),
+        match self.document().selected_design() {
+            Some(design) => Field::of(self.model(), &design).collect(),
             None => Field::all().collect(),
         }
     }

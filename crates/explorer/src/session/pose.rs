@@ -29,11 +29,11 @@ impl Session {
 
     /// Moves the platform by steps of a hundredth of `R` along x and y, and of a degree about z.
     pub fn nudge(&mut self, steps: [f64; 3]) {
-        let Some((pose, selected)) = self.pose().zip(self.document().selected.as_ref()) else {
+        let Some((pose, design)) = self.pose().zip(self.document().selected_design()) else {
             return;
         };
         let [x, y, turn] = steps;
-        let length = 0.01 * selected.design.base_radius();
+        let length = 0.01 * design.base_radius();
         let position = pose.position + length * DVec2::new(x, y);
         let phi = pose.phi + turn.to_radians();
         if let Some(stopped) = self.move_platform(Pose { position, phi }) {
@@ -44,7 +44,7 @@ impl Session {
     /// Moves the platform to `pose` or, if that is not reachable, as far towards it as possible in a straight line;
     /// returns what stopped it.
     pub fn move_platform(&mut self, pose: Pose) -> Option<String> {
-        let design = self.document().selected.as_ref()?.design;
+        let design = self.document().selected_design()?;
         let from = self.pose()?;
         let reach = |pose: &Pose| self.model().pose(&design, pose).err();
         let Some(stopped) = reach(&pose) else {
@@ -74,7 +74,7 @@ impl Session {
     /// Moves the platform towards `pose` as [`Session::move_platform`] does, and notes what stopped it.
     pub fn drag_platform(&mut self, pose: Pose) {
         let reason = self.move_platform(pose);
-        let design = self.document().selected.as_ref().map(|selected| selected.design);
+        let design = self.document().selected_design();
         self.stopped = match (reason, design, self.pose()) {
             (Some(reason), Some(design), Some(at)) => Some(Stopped { design, at, reason }),
             _ => None,
@@ -89,7 +89,7 @@ impl Session {
     /// Returns what stopped the dragged platform, as long as it stays there.
     pub fn stopped(&self) -> Option<&str> {
         let stopped = self.stopped.as_ref()?;
-        let design = self.document().selected.as_ref()?.design;
+        let design = self.document().selected_design()?;
         (stopped.design == design && Some(stopped.at) == self.pose()).then_some(&*stopped.reason)
     }
 

@@ -73,13 +73,8 @@ impl Session {
     /// Moves the selection by `steps` along the designs of the front that pass the filter.
     pub fn walk(&mut self, steps: isize) {
         let passing: Vec<usize> = self.passing().into_iter().map(|place| self.front[place].id).collect();
-        let here = match self.document().selected {
-            Some(Selected {
-                origin: DesignOrigin::Evaluated(id),
-                ..
-            }) => passing.iter().position(|&other| other == id),
-            _ => None,
-        };
+        let id = self.document().selected_id();
+        let here = id.and_then(|id| passing.iter().position(|&other| other == id));
         let next = match here {
             Some(here) => here.saturating_add_signed(steps).min(passing.len().saturating_sub(1)),
             None if steps < 0 => passing.len().saturating_sub(1),
@@ -284,11 +279,7 @@ impl Session {
 
     /// Adds or removes the star of the selected design, if it is a design of the run.
     pub fn toggle_star(&mut self) {
-        if let Some(Selected {
-            origin: DesignOrigin::Evaluated(id),
-            ..
-        }) = self.document().selected
-        {
+        if let Some(id) = self.document().selected_id() {
             self.toggle_star_of(id);
         }
     }
@@ -304,13 +295,7 @@ impl Session {
 
     /// Pins or unpins the selected design.
     pub fn toggle_pin(&mut self) {
-        let Some((design, name)) = self
-            .document()
-            .selected
-            .as_ref()
-            .map(|selected| selected.design)
-            .zip(self.selected_name())
-        else {
+        let Some((design, name)) = self.document().selected_design().zip(self.selected_name()) else {
             return;
         };
         if let Some(place) = self.document().pins.iter().position(|pin| pin.design == design) {
