@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use egui::{Key, Ui, ViewportCommand};
 
 use super::super::files::{Dialog, Purpose};
-use super::super::panels::named;
+use super::super::panels::{add_named, named};
 use super::super::{Panel, Phase, theme};
 use super::shortcuts::SHORTCUTS;
 use super::{Explorer, layout};
@@ -157,12 +157,10 @@ impl Explorer {
             .resizable(false)
             .anchor(egui::Align2::CENTER_TOP, [0.0, 60.0])
             .show(ui.ctx(), |ui| {
-                let field = ui.add(
-                    egui::TextEdit::singleline(&mut path)
-                        .hint_text("path of the file or folder")
-                        .desired_width(460.0),
-                );
-                ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Path"));
+                let field = egui::TextEdit::singleline(&mut path)
+                    .hint_text("path of the file or folder")
+                    .desired_width(460.0);
+                let field = add_named(ui, field, "Path");
                 if std::mem::take(&mut self.asks_anew) {
                     field.request_focus();
                 }

@@ -3,7 +3,7 @@
 use egui::{DragValue, ScrollArea, Slider, Ui};
 use kinefront_study::Column;
 
-use super::{named, typed};
+use super::{add_named, button, named, typed};
 use crate::{Filter, Purpose, Session, theme};
 use kinefront_model::evaluation::{Better, Objective};
 use kinefront_optimize::{Objectives, groups, ranking};
@@ -43,7 +43,7 @@ impl ChoosePanel {
                 // A front of one objective is a single design.
                 if session.study().objectives.len() > 1 {
                     let hover = "the design beyond which more of one objective costs much of the others (K)";
-                    if ui.button("Knee").on_hover_text(hover).clicked() {
+                    if button(ui, "Knee", hover) {
                         session.select_knee();
                     }
                 }
@@ -54,7 +54,7 @@ impl ChoosePanel {
                     };
                     let hover = format!("the design with the {more} {}", objective.quantity.entry().short);
                     let name = theme::capitalized(&objective.best_name());
-                    if ui.button(name).on_hover_text(hover).clicked() {
+                    if button(ui, name, &hover) {
                         session.select(id);
                     }
                 }
@@ -81,11 +81,9 @@ impl ChoosePanel {
         // The weight of the last of two objectives follows from that of the first.
         let sliders = if names.len() > 2 { names.len() } else { names.len() - 1 };
         for (weight, name) in self.weights.iter_mut().zip(&names).take(sliders) {
-            let slider = ui.add(
-                Slider::new(weight, 0.0..=1.0).custom_formatter(|weight, _| format!("{:.0} % {name}", 100.0 * weight)),
-            );
-            ui.ctx()
-                .accesskit_node_builder(slider.id, |node| node.set_label(format!("Weight of the {name}")));
+            let percent = |weight: f64, _| format!("{:.0} % {name}", 100.0 * weight);
+            let slider = Slider::new(weight, 0.0..=1.0).custom_formatter(percent);
+            add_named(ui, slider, &format!("Weight of the {name}"));
         }
         let weights = match names.len() {
             2 => vec![self.weights[0], 1.0 - self.weights[0]],
@@ -100,9 +98,8 @@ impl ChoosePanel {
     fn clusters(&mut self, ui: &mut Ui, session: &mut Session) {
         ui.horizontal(|ui| {
             ui.strong("Groups of similar designs");
-            let field = ui.add(typed(ui, DragValue::new(&mut self.groups)).range(2..=12).speed(0.05));
-            ui.ctx()
-                .accesskit_node_builder(field.id, |node| node.set_label("Number of groups"));
+            let field = typed(ui, DragValue::new(&mut self.groups)).range(2..=12).speed(0.05);
+            add_named(ui, field, "Number of groups");
         });
         let front = session.front_number();
         let middles = match self.middles.take() {

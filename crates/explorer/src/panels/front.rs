@@ -11,6 +11,7 @@ use kinefront_scene::text;
 use kinefront_study::{CertifiedWorkspace, Column, Study};
 
 use self::order::{Listing, Order, SortKey, active};
+use super::{add_named, button};
 use crate::{FrontEntry, Session, theme};
 use kinefront_model::evaluation::{PoseScalar, Quantity};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
@@ -115,17 +116,14 @@ impl FrontPanel {
                 theme::choice(ui, &mut self.listing.marked, true, format!("Marked ({marked})"))
                     .on_disabled_hover_text("mark designs in the scatter with Box or Lasso");
             });
-            let field = ui.add(
-                egui::TextEdit::singleline(&mut self.listing.search)
-                    .hint_text("search: 3-PRR, g3, text of a note")
-                    .desired_width(180.0),
-            );
-            ui.ctx()
-                .accesskit_node_builder(field.id, |node| node.set_label("Search the table"));
+            let field = egui::TextEdit::singleline(&mut self.listing.search)
+                .hint_text("search: 3-PRR, g3, text of a note")
+                .desired_width(180.0);
+            add_named(ui, field, "Search the table");
             ui.checkbox(&mut self.listing.starred_only, "starred only");
             ui.menu_button("Columns", |ui| self.column_menu(ui, session, columns));
             let hint = "copies the listed designs with these columns, separated by tabs, for a spreadsheet";
-            if ui.button("Copy table").on_hover_text(hint).clicked() {
+            if button(ui, "Copy table", hint) {
                 self.order.update(session, &self.listing);
                 ui.ctx().copy_text(tab_separated(session, self.order.ids(), columns));
             }

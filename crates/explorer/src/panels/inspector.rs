@@ -3,7 +3,7 @@
 use egui::{Color32, Grid, RichText, ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo, WidgetType};
 use kinefront_scene::text;
 
-use super::{named, what_if};
+use super::{add_named, button, named, what_if};
 use crate::{Known, Session, theme};
 use kinefront_model::certify::Verdict;
 use kinefront_model::evaluation::{ConstraintResult, Quantity};
@@ -50,11 +50,7 @@ fn heading(ui: &mut Ui, session: &mut Session) {
         ui.heading(format!("{} {name}", text::architecture(selected.design.architecture())));
         if session.is_modified() {
             ui.colored_label(theme::modified(ui.visuals().dark_mode), "modified design");
-            if ui
-                .button("Keep")
-                .on_hover_text("adds the modified design to the kept designs")
-                .clicked()
-            {
+            if button(ui, "Keep", "adds the modified design to the kept designs") {
                 session.keep();
             }
             what_if::back(ui, session);
@@ -62,18 +58,12 @@ fn heading(ui: &mut Ui, session: &mut Session) {
     });
     ui.horizontal_wrapped(|ui| {
         let pinned = session.document().pins.iter().any(|pin| pin.design == selected.design);
-        if ui
-            .add(theme::toggle(pinned, "📌 Pin"))
-            .on_hover_text("pins this design for comparison, up to four designs (P)")
-            .clicked()
-        {
+        let pin = ui.add(theme::toggle(pinned, "📌 Pin"));
+        let hint = "pins this design for comparison, up to four designs (P)";
+        if pin.on_hover_text(hint).clicked() {
             session.toggle_pin();
         }
-        if ui
-            .button("Copy")
-            .on_hover_text("copies the design as text (Ctrl+C)")
-            .clicked()
-        {
+        if button(ui, "Copy", "copies the design as text (Ctrl+C)") {
             ui.ctx().copy_text(selected.design.to_string());
         }
         if let crate::DesignOrigin::Evaluated(id) = selected.origin {
@@ -83,13 +73,8 @@ fn heading(ui: &mut Ui, session: &mut Session) {
                 session.toggle_star();
             }
             let mut note = session.document().notes.get(&id).cloned().unwrap_or_default();
-            let field = ui.add(
-                egui::TextEdit::singleline(&mut note)
-                    .hint_text("note")
-                    .desired_width(140.0),
-            );
-            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Note"));
-            if field.changed() {
+            let field = egui::TextEdit::singleline(&mut note);
+            if add_named(ui, field.hint_text("note").desired_width(140.0), "Note").changed() {
                 session.drag("note", |document| {
                     if note.is_empty() {
                         document.notes.remove(&id);
@@ -141,10 +126,7 @@ fn sliders(ui: &mut Ui, session: &mut Session, design: &Design) {
                     };
                     Some(number.trim().parse::<f64>().ok()? * unit)
                 });
-            let slider = ui.add(slider);
-            ui.ctx()
-                .accesskit_node_builder(slider.id, |node| node.set_label(variable.symbol()));
-            if slider.changed() {
+            if add_named(ui, slider, variable.symbol()).changed() {
                 session.modify(variable, value);
             }
         });

@@ -44,6 +44,25 @@ pub(super) fn named(button: egui::Response, name: &str) -> egui::Response {
     button.on_hover_text(name)
 }
 
+/// Shows a button with a hint; returns whether it was clicked.
+pub(super) fn button<'a>(ui: &mut Ui, text: impl egui::IntoAtoms<'a>, hint: &str) -> bool {
+    ui.button(text).on_hover_text(hint).clicked()
+}
+
+/// Shows a button with a hint for while it can be clicked, and one for while it cannot; returns whether it was clicked.
+pub(super) fn button_if(ui: &mut Ui, is_enabled: bool, button: egui::Button<'_>, hints: [&str; 2]) -> bool {
+    let button = ui.add_enabled(is_enabled, button).on_hover_text(hints[0]);
+    button.on_disabled_hover_text(hints[1]).clicked()
+}
+
+/// Shows a control that has no name beside it, and gives it one for assistive technology.
+pub(super) fn add_named(ui: &mut Ui, control: impl egui::Widget, name: &str) -> egui::Response {
+    let response = ui.add(control);
+    ui.ctx()
+        .accesskit_node_builder(response.id, |node| node.set_label(name));
+    response
+}
+
 /// Shows the button that starts and pauses a playback.
 pub(super) fn play_button(ui: &mut Ui, is_playing: &mut bool) {
     let (symbol, name) = if *is_playing { ("⏸", "Pause") } else { ("▶", "Play") };

@@ -11,7 +11,7 @@ use kinefront_model::mechanism::JointKind;
 use kinefront_scene::{MotionCurve, PathColor, drawn_samples, text};
 use kinefront_study::{TaskSection, TaskShapeChoice};
 
-use super::{fields, play_button};
+use super::{button, fields, play_button};
 use crate::threads::{FollowedMotion, MotionAnswer};
 use crate::{Session, theme};
 
@@ -313,20 +313,16 @@ fn form(ui: &mut Ui, session: &mut Session) {
             })
             .response
             .labelled_by(label);
-        if ui
-            .button("Add the pose")
-            .on_hover_text("adds the current pose of the platform to the waypoints")
-            .clicked()
+        let hint = "adds the current pose of the platform to the waypoints";
+        if button(ui, "Add the pose", hint)
             && let Some(pose) = session.pose()
         {
             session.add_waypoint(pose);
         }
         let drawing = session.view().drawing_path;
-        if ui
-            .add(theme::toggle(drawing, "Draw"))
-            .on_hover_text("clicks in the plan view of the panel Pose add waypoints")
-            .clicked()
-        {
+        let draw = ui.add(theme::toggle(drawing, "Draw"));
+        let hint = "clicks in the plan view of the panel Pose add waypoints";
+        if draw.on_hover_text(hint).clicked() {
             session.view_mut().drawing_path = !drawing;
         }
         if ui.button("No motion").clicked() {

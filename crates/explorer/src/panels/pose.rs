@@ -4,6 +4,7 @@ use egui::{Align2, Color32, FontId, Grid, ScrollArea, Sense, Slider, Stroke, Ui,
 use glam::DVec2;
 use kinefront_scene::text;
 
+use super::add_named;
 use super::modes::ModesView;
 use super::obstacles::ObstacleDrag;
 use super::plan::{Plan, card, paint, paint_workspace};
@@ -142,10 +143,7 @@ impl PosePanel {
                         let number = text.trim().trim_end_matches(['°', 'm']).trim().parse::<f64>().ok()?;
                         Some(if angle { number.to_radians() } else { number })
                     });
-                let slider = ui.add(slider);
-                ui.ctx()
-                    .accesskit_node_builder(slider.id, |node| node.set_label(format!("pose {name}")));
-                changed |= slider.changed();
+                changed |= add_named(ui, slider, &format!("pose {name}")).changed();
             });
         }
         if changed {

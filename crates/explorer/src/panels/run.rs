@@ -1,9 +1,9 @@
 //! The run panel: the study and the optimizer's settings, the run's controls, and its progress.
 
-use egui::{ComboBox, DragValue, Grid, ProgressBar, Ui};
+use egui::{Button, ComboBox, DragValue, Grid, ProgressBar, Ui};
 
 use super::progress::ProgressPlot;
-use super::typed;
+use super::{button, button_if, typed};
 use crate::{Phase, Session, theme};
 use kinefront_study::{AlgorithmName, BUILTIN, ConclusionPart, EndReason};
 
@@ -100,7 +100,7 @@ fn seed(ui: &mut Ui, seed: &mut u64) {
     ui.horizontal(|ui| {
         ui.add(typed(ui, DragValue::new(seed)).range(0..=i64::MAX as u64).speed(0.1))
             .labelled_by(label.id);
-        if ui.button("random").on_hover_text("draws a random seed").clicked() {
+        if button(ui, "random", "draws a random seed") {
             *seed = random_seed();
         }
     });
@@ -133,25 +133,17 @@ fn random_seed() -> u64 {
 fn main_button(ui: &mut Ui, session: &mut Session, valid: bool) {
     match session.phase() {
         Phase::Searching => {
-            if ui
-                .button("⏸ Pause")
-                .on_hover_text("pauses after the current generation (Space)")
-                .clicked()
-            {
+            if button(ui, "⏸ Pause", "pauses after the current generation (Space)") {
                 session.pause();
             }
         }
         Phase::Paused => {
-            if ui
-                .button("▶ Resume")
-                .on_hover_text("resumes the search (Space)")
-                .clicked()
-            {
+            if button(ui, "▶ Resume", "resumes the search (Space)") {
                 session.resume();
             }
         }
         Phase::Concluding { .. } => {
-            ui.add_enabled(false, egui::Button::new("⏸ Pause"));
+            ui.add_enabled(false, Button::new("⏸ Pause"));
         }
         _ => {
             let start = theme::primary("▶ Start");
@@ -159,12 +151,8 @@ fn main_button(ui: &mut Ui, session: &mut Session, valid: bool) {
             if ui.add_enabled(valid, start).on_disabled_hover_text(why).clicked() {
                 session.start();
             }
-            if session.continuable().is_some()
-                && ui
-                    .button("▶ Continue")
-                    .on_hover_text("continues the search in the folder of this run; a larger budget extends it")
-                    .clicked()
-            {
+            let hint = "continues the search in the folder of this run; a larger budget extends it";
+            if session.continuable().is_some() && button(ui, "▶ Continue", hint) {
                 session.continue_run();
             }
         }
@@ -176,28 +164,20 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
         let valid = session.editor().text_fault().is_none();
         main_button(ui, session, valid);
         let can_step = matches!(session.phase(), Phase::Searching | Phase::Paused);
-        if ui
-            .add_enabled(can_step, egui::Button::new("⏭ Step"))
-            .on_hover_text("runs one generation, then pauses (G)")
-            .on_disabled_hover_text("only while a search runs or is paused")
-            .clicked()
-        {
+        let why_not = "only while a search runs or is paused";
+        let hints = ["runs one generation, then pauses (G)", why_not];
+        if button_if(ui, can_step, Button::new("⏭ Step"), hints) {
             session.step();
         }
-        if ui
-            .add_enabled(can_step, egui::Button::new("⏹ Stop"))
-            .on_hover_text("ends the search; its front is verified and all designs are kept")
-            .on_disabled_hover_text("only while a search runs or is paused")
-            .clicked()
-        {
+        let hint = "ends the search; its front is verified and all designs are kept";
+        if button_if(ui, can_step, Button::new("⏹ Stop"), [hint, why_not]) {
             session.stop();
         }
-        if ui
-            .add_enabled(valid && session.is_running(), egui::Button::new("⟲ Restart"))
-            .on_hover_text("discards the current run and starts again with the study as edited here")
-            .on_disabled_hover_text("only during a run, and only if the study has no errors")
-            .clicked()
-        {
+        let hints = [
+            "discards the current run and starts again with the study as edited here",
+            "only during a run, and only if the study has no errors",
+        ];
+        if button_if(ui, valid && session.is_running(), Button::new("⟲ Restart"), hints) {
             session.start();
         }
     });

@@ -3,7 +3,7 @@
 use egui::{Button, CollapsingHeader, ScrollArea, TextEdit, Ui};
 
 use super::sketch::Sketch;
-use super::{fields, question};
+use super::{add_named, button_if, fields, question};
 use crate::{Purpose, Session, theme};
 use kinefront_study::Fault;
 
@@ -29,24 +29,12 @@ impl StudyPanel {
             }
             let history = session.editor().history();
             let (can_undo, can_redo) = (history.can_undo(), history.can_redo());
-            let hints = (
-                "undoes the last change of the study (Ctrl+Z)",
-                "redoes the change that was undone last (Ctrl+Shift+Z)",
-            );
-            let undo = ui.add_enabled(can_undo, Button::new("Undo"));
-            if undo
-                .on_hover_text(hints.0)
-                .on_disabled_hover_text("nothing to undo")
-                .clicked()
-            {
+            let hints = ["undoes the last change of the study (Ctrl+Z)", "nothing to undo"];
+            if button_if(ui, can_undo, Button::new("Undo"), hints) {
                 session.editor_mut().undo();
             }
-            let redo = ui.add_enabled(can_redo, Button::new("Redo"));
-            if redo
-                .on_hover_text(hints.1)
-                .on_disabled_hover_text("nothing to redo")
-                .clicked()
-            {
+            let hint = "redoes the change that was undone last (Ctrl+Shift+Z)";
+            if button_if(ui, can_redo, Button::new("Redo"), [hint, "nothing to redo"]) {
                 session.editor_mut().redo();
             }
             if let Some(path) = session.editor().path() {
@@ -61,14 +49,8 @@ impl StudyPanel {
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             if self.as_text {
                 let mut text = self.typed.clone().unwrap_or_else(|| session.editor().text().to_owned());
-                let field = ui.add(
-                    TextEdit::multiline(&mut text)
-                        .code_editor()
-                        .desired_width(f32::INFINITY),
-                );
-                ui.ctx()
-                    .accesskit_node_builder(field.id, |node| node.set_label("Study text"));
-                if field.changed() {
+                let field = TextEdit::multiline(&mut text).code_editor();
+                if add_named(ui, field.desired_width(f32::INFINITY), "Study text").changed() {
                     session.editor_mut().set_text(text.clone());
                     self.typed = Some(text);
                 }

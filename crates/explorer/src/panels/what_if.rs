@@ -6,6 +6,7 @@ use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_scene::text;
 use kinefront_study::{Column, Row};
 
+use super::button;
 use crate::{DesignOrigin, Known, Session, theme};
 
 /// Returns the design of the run from which the selected one was modified, with its id.
@@ -35,11 +36,9 @@ pub(super) fn change(ui: &mut Ui, variable: DesignVariable, value: f64, original
 
 /// Shows a button back to the design from which the selected one was modified.
 pub(super) fn back(ui: &mut Ui, session: &mut Session) {
+    let hint = "selects the design from which this one was modified";
     if let Some((id, _)) = original(session)
-        && ui
-            .button(format!("Back to #{id}"))
-            .on_hover_text("selects the design from which this one was modified")
-            .clicked()
+        && button(ui, format!("Back to #{id}"), hint)
     {
         session.select(id);
     }

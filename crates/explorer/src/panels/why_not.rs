@@ -4,6 +4,7 @@ use egui::{RichText, ScrollArea, Ui};
 use kinefront_scene::text::{number, quantity};
 use kinefront_study::{Drivers, RelaxationJson, WhyNotJson};
 
+use super::{button, named};
 use crate::{Session, WhyPoint, theme};
 
 /// Distance of what a relaxation comes to from the side \[points\].
@@ -26,11 +27,7 @@ impl WhyNotPanel {
         };
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new(format!("{}?", words(session, &point))).strong());
-            if ui
-                .button("Dismiss")
-                .on_hover_text("removes the question and its mark")
-                .clicked()
-            {
+            if button(ui, "Dismiss", "removes the question and its mark") {
                 session.withdraw_why();
             }
         });
@@ -163,7 +160,7 @@ fn entry(ui: &mut Ui, words: &str) {
 /// Shows what is relaxed as a link to the design that results; returns whether it was clicked.
 fn show_design(ui: &mut Ui, label: &str) -> bool {
     let link = ui.link(label);
-    super::named(link, &format!("Show the design for {label}")).clicked()
+    named(link, &format!("Show the design for {label}")).clicked()
 }
 
 /// Returns the name of what is relaxed, and its value before and after.

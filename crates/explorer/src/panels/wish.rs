@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use egui::{Align, Grid, Layout, RichText, ScrollArea, Slider, Ui};
+use egui::{Align, Checkbox, Grid, Layout, RichText, ScrollArea, Slider, Ui};
 use kinefront_model::evaluation::{Bound, Evaluation, PoseScalar, Quantity};
 use kinefront_model::mechanism::Design;
 use kinefront_scene::text::number;
 use kinefront_study::{Column, Condition, Wish, WishOutcome};
 
+use super::{add_named, button_if};
 use crate::{Session, theme};
 
 /// Range of the sliders \[%\].
@@ -85,14 +86,9 @@ impl WishPanel {
                 .custom_parser(|text| text.replace(['%', ' '], "").replace('−', "-").parse().ok());
             ui.horizontal(|ui| {
                 ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(60.0);
-                let slider = ui.add(slider);
-                ui.ctx().accesskit_node_builder(slider.id, |node| {
-                    node.set_label(format!("Desired change of {}", entry.label))
-                });
-                let keep = ui.checkbox(&mut wanted.keep, "keep");
-                ui.ctx()
-                    .accesskit_node_builder(keep.id, |node| node.set_label(format!("Keep {}", entry.label)));
-                keep.on_hover_text("must not become worse");
+                add_named(ui, slider, &format!("Desired change of {}", entry.label));
+                let keep = Checkbox::new(&mut wanted.keep, "keep");
+                add_named(ui, keep, &format!("Keep {}", entry.label)).on_hover_text("must not become worse");
             });
         }
     }
@@ -101,20 +97,16 @@ impl WishPanel {
         let wish = self.wish(evaluation);
         let is_stated = !wish.conditions.is_empty();
         ui.horizontal(|ui| {
-            let find = ui.add_enabled(is_stated && !session.is_wishing(), theme::primary("Find the design"));
-            let hint =
-                "finds the nearest design with these values, proved if the study requires proofs; undo removes it (Ctrl+Z)";
-            if find
-                .on_hover_text(hint)
-                .on_disabled_hover_text("move a slider first")
-                .clicked()
-            {
+            let hints = [
+                "finds the nearest design with these values, proved if the study requires proofs; undo removes it (Ctrl+Z)",
+                "move a slider first",
+            ];
+            let can_find = is_stated && !session.is_wishing();
+            if button_if(ui, can_find, theme::primary("Find the design"), hints) {
                 session.wish(wish);
             }
-            if ui
-                .add_enabled(!self.wanted.is_empty(), egui::Button::new("Reset"))
-                .clicked()
-            {
+            let reset = egui::Button::new("Reset");
+            if ui.add_enabled(!self.wanted.is_empty(), reset).clicked() {
                 self.wanted.clear();
             }
         });

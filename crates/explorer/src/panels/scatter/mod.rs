@@ -23,6 +23,7 @@ pub use self::coloring::Coloring;
 use self::coloring::{ColorLegend, ColorRange, ColorScale};
 pub use self::enclosing::DragTool;
 use self::enclosing::Enclosing;
+use super::{button, named};
 use crate::{MarkedCounts, Row, Session, theme};
 
 /// Time that a frame may spend on drawing the cloud.
@@ -188,10 +189,10 @@ impl Scatter {
                 of.join(", ")
             ));
             let hint = "filters to the ranges of the marked designs on both axes";
-            if ui.button("Filter").on_hover_text(hint).clicked() {
+            if button(ui, "Filter", hint) {
                 self.filter_to_marked(session);
             }
-            if ui.button("Unmark").on_hover_text("clears all marks").clicked() {
+            if button(ui, "Unmark", "clears all marks") {
                 session.mark(Arc::default());
             }
         });
@@ -296,11 +297,7 @@ impl Scatter {
                 ui.end_row();
             }
             self.axis_field(ui, session, 1, "y");
-            if ui
-                .button("Fit")
-                .on_hover_text("fits the view to the feasible designs (or double-click)")
-                .clicked()
-            {
+            if button(ui, "Fit", "fits the view to the feasible designs (or double-click)") {
                 self.fitted = true;
             }
         });
@@ -564,7 +561,7 @@ fn chips(ui: &mut Ui, session: &mut Session) {
         ui.strong(format!("{} of {} pass", session.passing().len(), session.front().len()));
         let chip = |ui: &mut Ui, words: &str, name: &str| {
             let button = ui.button(format!("{words}  ×"));
-            super::named(button, &format!("Remove the filter: {name}")).clicked()
+            named(button, &format!("Remove the filter: {name}")).clicked()
         };
         if filter.feasible_only && chip(ui, "feasible", "feasible only") {
             kept.feasible_only = false;
