@@ -1,6 +1,6 @@
 //! The accuracy panel: the errors of the pose that the tolerances of the study cause, and how much of them each source has.
 
-use egui::{RichText, ScrollArea, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType, vec2};
+use egui::{ScrollArea, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType, vec2};
 use kinefront_model::dynamics::{Accuracy, ErrorBudget};
 use kinefront_scene::text::number;
 
@@ -45,14 +45,11 @@ impl AccuracyPanel {
 fn found(ui: &mut Ui, accuracy: &Accuracy) {
     let position = |error: f64| format!("{} mm", number(1e3 * error));
     let orientation = |error: f64| format!("{}°", number(error.to_degrees()));
-    ui.label(
-        RichText::new(format!(
-            "position ±{}, RMS {}",
-            position(accuracy.worst_position),
-            position(accuracy.rms_position)
-        ))
-        .strong(),
-    );
+    ui.strong(format!(
+        "position ±{}, RMS {}",
+        position(accuracy.worst_position),
+        position(accuracy.rms_position)
+    ));
     ui.label(format!(
         "orientation ±{}, RMS {}",
         orientation(accuracy.worst_orientation),

@@ -4,7 +4,7 @@ use egui::{Grid, RichText, ScrollArea, Ui};
 use kinefront_scene::text::{number, short};
 use kinefront_study::{Column, EqualLevel};
 
-use super::named;
+use super::{headings, named};
 use crate::{Purpose, Session, theme};
 
 /// The panel.
@@ -26,7 +26,7 @@ impl BesidePanel {
         let name = beside.name.clone();
         let close = ui
             .horizontal(|ui| {
-                ui.label(RichText::new(format!("{} and {name}", session.study().name)).strong());
+                ui.strong(format!("{} and {name}", session.study().name));
                 named(ui.small_button("×"), &format!("Close {name}")).clicked()
             })
             .inner;
@@ -60,10 +60,7 @@ fn levels(ui: &mut Ui, session: &Session, name: &str) {
     Grid::new("levels").num_columns(4).striped(true).show(ui, |ui| {
         let at = rest.first().map(|second| Column::Quantity(second.quantity).title());
         let cost = Column::Quantity(first.quantity).title();
-        for heading in [at.unwrap_or_default(), cost, name.to_owned(), "change".to_owned()] {
-            ui.label(RichText::new(heading).strong());
-        }
-        ui.end_row();
+        headings(ui, [&*at.unwrap_or_default(), &*cost, name, "change"]);
         for level in &levels {
             ui.label(level.at.map_or_else(|| "best".to_owned(), short));
             for cost in &level.costs {
@@ -86,10 +83,7 @@ fn differences(ui: &mut Ui, session: &Session, name: &str) {
         return;
     }
     Grid::new("settings").num_columns(3).striped(true).show(ui, |ui| {
-        for heading in ["setting", &session.study().name, name] {
-            ui.label(RichText::new(heading).strong());
-        }
-        ui.end_row();
+        headings(ui, ["setting", &session.study().name, name]);
         for difference in &beside.differences {
             ui.label(RichText::new(&difference.key).monospace());
             for value in &difference.values {

@@ -3,7 +3,7 @@
 use egui::{DragValue, ScrollArea, Slider, Ui};
 use kinefront_study::Column;
 
-use super::{add_named, button, named, typed};
+use super::{add_named, button, named, range, typed};
 use crate::{Filter, Purpose, Session, theme};
 use kinefront_model::evaluation::{Better, Objective};
 use kinefront_optimize::{Objectives, groups, ranking};
@@ -194,14 +194,9 @@ fn ranges(ui: &mut Ui, edited: &mut Filter) {
 fn add_range(ui: &mut Ui, session: &Session, edited: &mut Filter) {
     for quantity in Column::quantities(session.study().named_quantities()) {
         if !edited.ranges.contains_key(&*quantity.name()) && ui.selectable_label(false, quantity.title()).clicked() {
-            let column = session.store().column(quantity);
-            let range = column
-                .iter()
-                .filter(|value| value.is_finite())
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
-                    [low.min(value), high.max(value)]
-                });
-            edited.set_range(quantity, Some(if range[0] <= range[1] { range } else { [0.0, 1.0] }));
+            let column = session.store().column(quantity).iter().copied();
+            let [low, high] = range(column.filter(|value| value.is_finite()));
+            edited.set_range(quantity, Some(if low <= high { [low, high] } else { [0.0, 1.0] }));
         }
     }
 }

@@ -1,10 +1,11 @@
 //! The drivers panel: what each requirement, bound and property of the material costs at the selected design.
 
-use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, WidgetType, vec2};
+use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Ui, WidgetInfo, WidgetType, vec2};
 use kinefront_model::spatial::Pose;
 use kinefront_scene::text::{self, number};
 use kinefront_study::{Drivers, PriceJson};
 
+use super::range;
 use crate::{Session, theme};
 
 /// Prices below this \[% for 1 %\] are told as free.
@@ -46,7 +47,7 @@ impl DriversPanel {
 
 fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
     let (objective, unit) = drivers.objective_name();
-    ui.label(RichText::new(format!("{name}: change of the {objective} for +1 % of each")).strong());
+    ui.strong(format!("{name}: change of the {objective} for +1 % of each"));
     let excess = 100.0 * drivers.excess;
     ui.weak(if excess.abs() < 0.005 {
         format!(
@@ -72,7 +73,7 @@ fn show(ui: &mut Ui, session: &mut Session, name: &str, drivers: &Drivers) {
     ui.add_space(6.0);
     ui.weak("Outlines show the prices if only the bars change, whiskers those of steps up to 20 %. Click a bar to see the pose that determines its price.");
     if !drivers.alternatives.is_empty() {
-        ui.label(RichText::new(format!("Change of the {objective} with the next entry of a list")).strong());
+        ui.strong(format!("Change of the {objective} with the next entry of a list"));
     }
     for other in &drivers.alternatives {
         ui.label(match other.change {
@@ -181,10 +182,8 @@ fn paint_bar(ui: &Ui, rect: Rect, price: &PriceJson, largest: f64, share: &str) 
 /// Returns the least and the largest price that finite steps give: the change divided by the step.
 fn range_of_steps(price: &PriceJson) -> Option<[f64; 2]> {
     let slopes = price.steps.iter().map(|[step, change]| change / step);
-    let range = slopes.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], slope| {
-        [least.min(slope), most.max(slope)]
-    });
-    (range[0] <= range[1]).then_some(range)
+    let [least, most] = range(slopes);
+    (least <= most).then_some([least, most])
 }
 
 /// Tells what finite steps change.

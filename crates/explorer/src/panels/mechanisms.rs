@@ -1,8 +1,6 @@
 //! The mechanisms panel: a sketch of each architecture with its actuated joints marked, and which of them the study searches.
 
-use egui::{
-    Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, WidgetType,
-};
+use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, WidgetType};
 
 use super::sketch::Sketch;
 use crate::{Session, theme};
@@ -85,7 +83,7 @@ fn card(ui: &mut Ui, sketch: &Sketch, is_chosen: bool) -> bool {
     response
         .on_hover_ui(|ui| {
             let chain = sketch.architecture.chain();
-            ui.label(RichText::new(name).strong());
+            ui.strong(name);
             let variables = sketch.architecture.further_variables();
             let variables: Vec<&str> = variables.iter().map(|variable| variable.symbol()).collect();
             ui.label(format!(

@@ -63,6 +63,29 @@ pub(super) fn add_named(ui: &mut Ui, control: impl egui::Widget, name: &str) -> 
     response
 }
 
+/// Shows the titles of the columns of a grid.
+pub(super) fn headings(ui: &mut Ui, titles: impl IntoIterator<Item = impl Into<egui::RichText>>) {
+    for title in titles {
+        ui.strong(title);
+    }
+    ui.end_row();
+}
+
+/// Writes into the middle of an empty plot what comes there.
+pub(super) fn say_empty(ui: &Ui, painter: &egui::Painter, middle: egui::Pos2, words: &str) {
+    let color = ui.visuals().weak_text_color();
+    let font = egui::FontId::proportional(13.0);
+    painter.text(middle, egui::Align2::CENTER_CENTER, words, font, color);
+}
+
+/// Returns the least and the largest of values; of none, the first is above the second.
+pub(super) fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let values = values.into_iter();
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    })
+}
+
 /// Shows the button that starts and pauses a playback.
 pub(super) fn play_button(ui: &mut Ui, is_playing: &mut bool) {
     let (symbol, name) = if *is_playing { ("⏸", "Pause") } else { ("▶", "Play") };

@@ -8,6 +8,7 @@ use egui::{
     Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType,
 };
 
+use super::{range, say_empty};
 use crate::{Session, theme};
 use kinefront_model::evaluation::{Constraint, Model};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
@@ -75,15 +76,8 @@ impl ParallelPanel {
             painter.add(Shape::Mesh(Arc::clone(mesh)));
         }
         if session.store().is_empty() {
-            let text = "The designs of a run appear here, each as a line: start a run in the panel Run, or open one.";
-            let color = ui.visuals().weak_text_color();
-            painter.text(
-                plot.center(),
-                Align2::CENTER_CENTER,
-                text,
-                FontId::proportional(13.0),
-                color,
-            );
+            let words = "The designs of a run appear here, each as a line: start a run in the panel Run, or open one.";
+            say_empty(ui, &painter, plot.center(), words);
         }
         self.selected_line(&painter, session, &axes, plot);
         for index in 0..axes.len() {
@@ -123,7 +117,7 @@ impl ParallelPanel {
         };
         let title = format!("{}{better}", axis.short());
         text(plot.top() - 36.0, Align2::CENTER_TOP, title, 12.0, ink);
-        let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
+        let [low, high] = self.range_of(index);
         text(plot.top() - 3.0, Align2::CENTER_BOTTOM, theme::number(high), 12.0, weak);
         text(plot.bottom() + 3.0, Align2::CENTER_TOP, theme::number(low), 12.0, weak);
         if let Some([from, to]) = session.document().filter.range(axis) {
@@ -139,9 +133,14 @@ impl ParallelPanel {
         }
     }
 
+    /// Returns the range that an axis shows.
+    fn range_of(&self, index: usize) -> [f64; 2] {
+        self.ranges.get(index).copied().unwrap_or([0.0, 1.0])
+    }
+
     /// Returns the vertical screen coordinate of a value on an axis.
     fn height(&self, index: usize, axis: Column, value: f64, plot: Rect) -> f32 {
-        let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
+        let [low, high] = self.range_of(index);
         let scale = |value: f64| {
             if axis.is_logarithmic() {
                 value.max(1e-9).log10()
@@ -155,7 +154,7 @@ impl ParallelPanel {
 
     /// Returns the value at a vertical screen coordinate of an axis.
     fn value(&self, index: usize, axis: Column, y: f32, plot: Rect) -> f64 {
-        let [low, high] = self.ranges.get(index).copied().unwrap_or([0.0, 1.0]);
+        let [low, high] = self.range_of(index);
         let fraction = f64::from(((plot.bottom() - y) / plot.height()).clamp(0.0, 1.0));
         if axis.is_logarithmic() {
             let (low, high) = (low.max(1e-9).log10(), high.max(1e-9).log10());
@@ -212,7 +211,7 @@ impl ParallelPanel {
             .step_by(every)
             .filter(|&id| store.is_feasible(id))
             .collect();
-        self.ranges = axes.iter().map(|axis| range_of(*axis, session, &sample)).collect();
+        self.ranges = axes.iter().map(|axis| range_on(*axis, session, &sample)).collect();
         let mesh = self.mesh(session, axes, &sample, plot, dark);
         self.drawn = Some((drawn, Arc::new(mesh)));
     }
@@ -261,27 +260,21 @@ fn left_of(index: usize, axes: &[Column], plot: Rect) -> f32 {
 }
 
 /// Range of an axis: that of the sampled designs and the front, or the bounds of a variable.
-fn range_of(axis: Column, session: &Session, sample: &[usize]) -> [f64; 2] {
+fn range_on(axis: Column, session: &Session, sample: &[usize]) -> [f64; 2] {
     let column = session.store().column(axis);
     let front = session.front().iter().filter_map(|entry| entry.row.number(axis));
-    let found = sample
-        .iter()
-        .map(|&id| column[id])
-        .chain(front)
-        .filter(|value| value.is_finite())
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-            [low.min(value), high.max(value)]
-        });
-    let range = match axis {
+    let values = sample.iter().map(|&id| column[id]).chain(front);
+    let found = range(values.filter(|value| value.is_finite()));
+    let [low, high] = match axis {
         Column::Dimension(variable) => session.study().range(variable),
         // Margins have no upper bound, and those near 0 matter most.
         Column::Margin(_) => [found[0].min(0.0), found[1].clamp(0.1, 10.0)],
         _ => found,
     };
-    if range[0] < range[1] {
-        range
+    if low < high {
+        [low, high]
     } else {
-        [range[0].min(0.0), range[0].max(0.0) + 1.0]
+        [low.min(0.0), low.max(0.0) + 1.0]
     }
 }
 

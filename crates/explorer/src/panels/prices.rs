@@ -166,7 +166,7 @@ fn plots([limits, others]: [&mut Ui; 2], session: &mut Session, along: &DriversA
             .include_y(0.0);
         let [low, high] = usual_range(curves);
         let weak = ui.visuals().weak_text_color();
-        let [first, last] = range(along);
+        let [first, last] = ends(along);
         let shown = plot.show(ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([first, low], [last, high.max(low + 1e-3)]));
             match is_stacked {
@@ -195,13 +195,10 @@ fn plots([limits, others]: [&mut Ui; 2], session: &mut Session, along: &DriversA
 }
 
 /// Returns the places of the first and the last design along the front, or of the change of architecture before or after it.
-fn range(along: &DriversAlong) -> [f64; 2] {
+fn ends(along: &DriversAlong) -> [f64; 2] {
     let designs = along.designs.iter().map(|(_, at, _)| *at);
     let crossings = along.crossings.iter().map(|crossing| crossing.at);
-    let all = designs.chain(crossings);
-    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
-        [low.min(at), high.max(at)]
-    })
+    super::range(designs.chain(crossings))
 }
 
 /// Names the curves in their colours.

@@ -1,7 +1,8 @@
 //! The space panel: the designs in three quantities at once, by default the objectives, as points that can be turned and clicked.
 
-use egui::{Align2, FontId, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+use egui::{FontId, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 
+use super::{range, say_empty};
 use crate::{Session, theme};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
 use kinefront_study::{Column, Row};
@@ -85,14 +86,9 @@ impl SpacePanel {
         self.view[1] = (self.view[1] + 0.01 * drag.y).clamp(-1.5, 1.5);
         let painter = ui.painter_at(rect);
         if session.front().is_empty() {
-            let text = "The designs of the front appear here once a run has found some. Drag to turn, click to select.";
-            painter.text(
-                rect.center(),
-                Align2::CENTER_CENTER,
-                text,
-                FontId::proportional(13.0),
-                ui.visuals().weak_text_color(),
-            );
+            let words =
+                "The designs of the front appear here once a run has found some. Drag to turn, click to select.";
+            say_empty(ui, &painter, rect.center(), words);
             return;
         }
         let axes = columns(session).map(|column| axis(session, column));
@@ -114,9 +110,7 @@ impl SpacePanel {
 /// The axis of a column over the range of the front.
 fn axis(session: &Session, column: Column) -> SpaceAxis {
     let values = session.front().iter().filter_map(|entry| entry.row.number(column));
-    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(value), high.max(value)]
-    });
+    let [low, high] = range(values);
     SpaceAxis { column, low, high }
 }
 

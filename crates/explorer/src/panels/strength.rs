@@ -1,7 +1,7 @@
 //! The strength panel: the stress of every bar at the pose, and which of them buckles first, under the loads of the study or under a wrench
 //! that is turned by hand.
 
-use egui::{DragValue, Grid, RichText, ScrollArea, Slider, Ui};
+use egui::{DragValue, Grid, ScrollArea, Slider, Ui};
 use kinefront_model::mechanism::JointKind;
 use kinefront_model::strength::{LARGEST_FACTOR, MemberStrength, StrengthReport};
 use kinefront_scene::text::{self, number};
@@ -105,12 +105,10 @@ impl StrengthPanel {
 /// Shows the strength at a pose.
 fn found(ui: &mut Ui, report: &StrengthReport, yield_strength: Option<f64>, actuator: JointKind) {
     if let Some(factor) = report.safety_factor {
-        let words = format!("safety factor against yielding {}", at_most(factor));
-        ui.label(RichText::new(words).strong());
+        ui.strong(format!("safety factor against yielding {}", at_most(factor)));
     }
     if let Some(factor) = report.buckling_factor {
-        let words = format!("buckling factor at least {}", at_most(factor));
-        ui.label(RichText::new(words).strong());
+        ui.strong(format!("buckling factor at least {}", at_most(factor)));
         ui.label(buckling_words(&report.members));
     }
     let efforts = report.actuators.map(number).join(", ");

@@ -1,6 +1,6 @@
 //! The panel that tells why a point beyond the front cannot be had, and what each requirement would have to give for it.
 
-use egui::{RichText, ScrollArea, Ui};
+use egui::{ScrollArea, Ui};
 use kinefront_scene::text::{number, quantity};
 use kinefront_study::{Drivers, RelaxationJson, WhyNotJson};
 
@@ -26,7 +26,7 @@ impl WhyNotPanel {
             return;
         };
         ui.horizontal_wrapped(|ui| {
-            ui.label(RichText::new(format!("{}?", words(session, &point))).strong());
+            ui.strong(format!("{}?", words(session, &point)));
             if button(ui, "Dismiss", "removes the question and its mark") {
                 session.withdraw_why();
             }
@@ -49,7 +49,7 @@ impl WhyNotPanel {
 
 /// Tells what stands in the way of a study of which no design is feasible.
 fn hindrances(ui: &mut Ui, session: &mut Session) {
-    ui.label(RichText::new("No design of the run is feasible.").strong());
+    ui.strong("No design of the run is feasible.");
     let Some(answer) = session.hindrances() else {
         ui.weak("Searching for the requirements that prevent a feasible design…");
         return;

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use egui::{Align, Checkbox, Grid, Layout, RichText, ScrollArea, Slider, Ui};
+use egui::{Align, Checkbox, Grid, Layout, ScrollArea, Slider, Ui};
 use kinefront_model::evaluation::{Bound, Evaluation, PoseScalar, Quantity};
 use kinefront_model::mechanism::Design;
 use kinefront_scene::text::number;
 use kinefront_study::{Column, Condition, Wish, WishOutcome};
 
-use super::{add_named, button_if};
+use super::{add_named, button_if, headings};
 use crate::{Session, theme};
 
 /// Range of the sliders \[%\].
@@ -55,7 +55,7 @@ impl WishPanel {
                 ));
                 return;
             }
-            ui.label(RichText::new(format!("What should change in {name}?")).strong());
+            ui.strong(format!("What should change in {name}?"));
             self.quantities(ui, session, &known.evaluation);
             self.buttons(ui, session, &known.evaluation);
             ui.separator();
@@ -208,10 +208,7 @@ fn outcome_of(ui: &mut Ui, session: &mut Session, outcome: &WishOutcome) {
     }
     let found = &outcome.found;
     Grid::new("granted").num_columns(4).striped(true).show(ui, |ui| {
-        for heading in ["", "before", "after", "change"] {
-            ui.label(RichText::new(heading).strong());
-        }
-        ui.end_row();
+        headings(ui, ["", "before", "after", "change"]);
         for quantity in wishable(session) {
             let values = [&outcome.before, &found.evaluation].map(|evaluation| evaluation.quantities.get(quantity));
             let [Some(before), Some(after)] = values else { continue };

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::{Pos2, Response, Shape, Stroke, Ui};
 use egui_plot::{PlotPoint, PlotTransform};
 
+use super::super::range;
 use super::axis::ScatterAxis;
 use crate::{Session, theme};
 
@@ -152,13 +153,7 @@ fn enclosed(corners: &[[f64; 2]], axes: [ScatterAxis; 2], session: &Session) -> 
 
 /// Returns the range of the corners on each axis.
 fn bounds(corners: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    [0, 1].map(|k| {
-        corners
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], corner| {
-                [low.min(corner[k]), high.max(corner[k])]
-            })
-    })
+    [0, 1].map(|k| range(corners.iter().map(|corner| corner[k])))
 }
 
 /// Returns whether a point lies within a polygon, which may cross itself, by the even-odd rule.

@@ -23,7 +23,7 @@ pub use self::coloring::Coloring;
 use self::coloring::{ColorLegend, ColorRange, ColorScale};
 pub use self::enclosing::DragTool;
 use self::enclosing::Enclosing;
-use super::{button, named};
+use super::{button, named, range, say_empty};
 use crate::{MarkedCounts, Row, Session, theme};
 
 /// Time that a frame may spend on drawing the cloud.
@@ -157,10 +157,12 @@ impl Scatter {
         self.pointed(&shown.response, session);
         self.draw_cloud(ui, session, dark);
         self.arrows(ui);
+        let frame = *shown.transform.frame();
         if session.store().is_empty() {
-            self.say_empty(ui);
+            let words = "Designs appear here as they are evaluated:\nstart a run in the panel Run, or open one.";
+            say_empty(ui, &ui.painter_at(frame), frame.center(), words);
         }
-        self.legend(ui, *shown.transform.frame(), dark);
+        self.legend(ui, frame, dark);
     }
 
     /// Tells how many designs are marked, and what can be done with them.
@@ -203,10 +205,7 @@ impl Scatter {
         let of_axis = |axis: &ScatterAxis| {
             let ids = session.document().marked.iter();
             let values = ids.filter_map(|&id| session.number(id, axis.quantity));
-            let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-                [low.min(value), high.max(value)]
-            });
-            (axis.quantity, range)
+            (axis.quantity, range(values))
         };
         let ranges = self.axes.each_ref().map(of_axis);
         session.edit(|document| {
@@ -458,20 +457,6 @@ impl Scatter {
         if !self.cloud.advance(ui.ctx(), session.store(), &prepared, &view, BUDGET) {
             ui.ctx().request_repaint();
         }
-    }
-
-    /// Says how designs come into the scatter.
-    fn say_empty(&self, ui: &Ui) {
-        let Some(transform) = self.transform else {
-            return;
-        };
-        ui.painter_at(*transform.frame()).text(
-            transform.frame().center(),
-            Align2::CENTER_CENTER,
-            "Designs appear here as they are evaluated:\nstart a run in the panel Run, or open one.",
-            egui::FontId::proportional(13.0),
-            ui.visuals().weak_text_color(),
-        );
     }
 
     /// Draws an arrow in the direction in which both quantities improve.
