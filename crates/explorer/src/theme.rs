@@ -160,20 +160,12 @@ pub fn mark(architecture: Architecture) -> MarkerShape {
 
 /// Returns the background colour on which designs are drawn.
 pub fn ground(dark: bool) -> Color32 {
-    if dark {
-        Color32::from_gray(16)
-    } else {
-        Color32::from_gray(250)
-    }
+    of_theme(dark, [16; 3], [250; 3])
 }
 
 /// Returns the colour of infeasible designs.
 pub fn infeasible(dark: bool) -> Color32 {
-    if dark {
-        Color32::from_gray(88)
-    } else {
-        Color32::from_gray(178)
-    }
+    of_theme(dark, [88; 3], [178; 3])
 }
 
 /// Returns the colour of lines and text that contrast with the background.

@@ -2,6 +2,7 @@
 
 use egui::{FontId, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 
+use super::scatter::ScatterAxis;
 use super::{range, say_empty};
 use crate::{Session, theme};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
@@ -33,19 +34,11 @@ struct SpaceAxis {
 }
 
 impl SpaceAxis {
-    fn scale(&self, value: f64) -> f64 {
-        if self.column.is_logarithmic() {
-            value.max(1e-12).log10()
-        } else {
-            value
-        }
-    }
-
     /// Place of a value on the axis, in \[−1, 1\] over the range.
     fn place(&self, value: f64) -> f64 {
-        let (low, high) = (self.scale(self.low), self.scale(self.high));
+        let [low, high, value] = [self.low, self.high, value].map(|value| ScatterAxis::usual(self.column).place(value));
         if high > low {
-            2.0 * (self.scale(value) - low) / (high - low) - 1.0
+            2.0 * (value - low) / (high - low) - 1.0
         } else {
             0.0
         }

@@ -41,7 +41,14 @@ impl From<(String, bool)> for ScatterAxis {
 }
 
 impl ScatterAxis {
-    pub(super) fn place(self, value: f64) -> f64 {
+    /// Returns the axis of a quantity with the scale that is usual for it.
+    pub fn usual(quantity: Column) -> Self {
+        let log = quantity.is_logarithmic();
+        Self { quantity, log }
+    }
+
+    /// Returns the place of a value on the axis: on a logarithmic one, its decimal logarithm.
+    pub fn place(self, value: f64) -> f64 {
         if self.log { value.max(1e-12).log10() } else { value }
     }
 

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 
+use super::axis::ScatterAxis;
 use super::coloring::{ColorScale, Coloring, density};
 use crate::data::PreparedFilter;
 use crate::{Store, theme};
@@ -29,8 +30,8 @@ pub struct View {
 /// Settings that determine which designs are drawn and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
-    /// Quantities of the axes, and whether each axis is logarithmic.
-    pub axes: [(super::Column, bool); 2],
+    /// The axes.
+    pub axes: [ScatterAxis; 2],
     /// Number of the store that the ids belong to.
     pub era: u64,
     /// Text of the filter.
@@ -95,8 +96,8 @@ impl CloudImage {
     /// Draws designs until `deadline`; returns whether any was drawn.
     fn draw(&mut self, store: &Store, prepared: &PreparedFilter<'_>, deadline: Instant) -> bool {
         let before = self.drawn;
-        let [(x, x_log), (y, y_log)] = self.view.style.axes;
-        let (xs, ys) = (store.column(x), store.column(y));
+        let [x, y] = self.view.style.axes;
+        let (xs, ys) = (store.column(x.quantity), store.column(y.quantity));
         let View { size, low, high, .. } = self.view;
         let scale = [0, 1].map(|k| size[k] as f64 / (high[k] - low[k]));
         let dark = self.view.style.dark;
@@ -110,12 +111,11 @@ impl CloudImage {
             Coloring::Quantity(column) => self.view.scale.map(|scale| (scale, store.column(column))),
             _ => None,
         };
-        let place = |value: f64, log: bool| if log { value.max(1e-12).log10() } else { value };
         while self.drawn < store.len() && Instant::now() < deadline {
             let end = (self.drawn + BATCH).min(store.len());
             for id in self.drawn..end {
-                let column = (place(xs[id], x_log) - low[0]) * scale[0];
-                let row = (high[1] - place(ys[id], y_log)) * scale[1];
+                let column = (x.place(xs[id]) - low[0]) * scale[0];
+                let row = (high[1] - y.place(ys[id])) * scale[1];
                 // Negated, so that NaN counts as outside.
                 if !(column >= 0.0 && row >= 0.0 && column < size[0] as f64 && row < size[1] as f64) {
                     continue;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{Pos2, Response, Shape, Stroke, Ui};
-use egui_plot::{PlotPoint, PlotTransform};
+use egui_plot::PlotTransform;
 
 use super::super::range;
 use super::axis::ScatterAxis;
@@ -120,7 +120,7 @@ impl Enclosing {
             && region.axes == axes
             && Arc::ptr_eq(&region.ids, &session.document().marked)
         {
-            let screen = |[x, y]: &[f64; 2]| transform.position_from_point(&PlotPoint::new(*x, *y));
+            let screen = |corner: &[f64; 2]| transform.position_from_point(&(*corner).into());
             let corners: Vec<Pos2> = region.corners.iter().map(screen).collect();
             let closed: Vec<Pos2> = corners.iter().chain(corners.first()).copied().collect();
             painter.extend(Shape::dashed_line(&closed, stroke, 5.0, 3.0));

@@ -1,7 +1,7 @@
 //! Marks drawn over the cloud: the front, its knee, the references, and the selected design.
 
 use egui::{Align2, Color32};
-use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points, Text};
+use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points, Text};
 use kinefront_study::Column;
 
 use super::coloring::{ColorScale, Coloring};
@@ -74,18 +74,16 @@ impl Scatter {
                 .front
                 .iter()
                 .filter(|entry| entry.row.design.architecture() == architecture);
-            let places: Vec<[f64; 2]> = own.map(|entry| self.place(&entry.row)).collect();
+            let places = own.map(|entry| self.place(&entry.row)).collect();
             let color = theme::architecture(architecture, colors.dark);
-            let points = Points::new("", places).radius(3.5).filled(false).color(color);
-            marks.push((points.shape(theme::mark(architecture)).allow_hover(false), None));
+            let points = points(places, theme::mark(architecture), 3.5, color);
+            marks.push((points.filled(false), None));
         }
         // The last design of a front lies at its end, where there is room for a name.
         if let Some(last) = beside.front.last() {
-            let [x, y] = self.place(&last.row);
-            let name = format!("{}{}", beside.name, "\u{a0}".repeat(3));
-            let text = Text::new("", PlotPoint::new(x, y), name).color(colors.ink);
-            let end = Points::new("", vec![[x, y]]).radius(2.0).color(ink).allow_hover(false);
-            marks.push((end, Some(text.anchor(Align2::RIGHT_BOTTOM))));
+            let at = self.place(&last.row);
+            let end = points(vec![at], MarkerShape::Circle, 2.0, ink);
+            marks.push((end, Some(text_before(at, &beside.name, colors.ink))));
         }
     }
 
@@ -129,9 +127,8 @@ impl Scatter {
             } else {
                 color.gamma_multiply(0.3)
             };
-            let points = Points::new("", vec![self.place(&entry.row)]).radius(4.0).color(color);
             let shape = theme::mark(entry.row.design.architecture());
-            Some((points.shape(shape).allow_hover(false), None))
+            Some((points(vec![self.place(&entry.row)], shape, 4.0, color), None))
         };
         session.front().iter().filter_map(mark).collect()
     }
@@ -143,7 +140,7 @@ impl Scatter {
         }
         let prepared = session.document().filter.prepare(session.store());
         let of = |architecture: Architecture, passes: bool| {
-            let points: Vec<[f64; 2]> = session
+            let places = session
                 .front()
                 .iter()
                 .filter(|entry| entry.row.design.architecture() == architecture)
@@ -156,8 +153,7 @@ impl Scatter {
             } else {
                 theme::mix(color, colors.ground, 0.3)
             };
-            let points = Points::new("", points).radius(4.0).color(color);
-            (points.shape(theme::mark(architecture)).allow_hover(false), None)
+            (points(places, theme::mark(architecture), 4.0, color), None)
         };
         let architectures = session.study().architectures.iter();
         architectures
@@ -175,14 +171,14 @@ impl Scatter {
             match entry.certified {
                 Some(certified) if certified.is_proved => proved.push(at),
                 Some(_) => {
-                    let dots = Text::new("", PlotPoint::new(at[0], at[1]), "◌").color(ink);
+                    let dots = Text::new("", at.into(), "◌").color(ink);
                     marks.push((ring(at, 0.0, ink), Some(dots)));
                 }
                 None => {}
             }
         }
-        let rings = Points::new("", proved).radius(5.5).filled(false).color(ink);
-        marks.push((rings.shape(MarkerShape::Circle).allow_hover(false), None));
+        let rings = points(proved, MarkerShape::Circle, 5.5, ink);
+        marks.push((rings.filled(false), None));
         marks
     }
 
@@ -194,21 +190,15 @@ impl Scatter {
         let front = session.front();
         let objectives: Vec<Objectives> = front.iter().map(|entry| entry.objectives()).collect();
         let at = self.place(&front[knee(&objectives)?].row);
-        let text = Text::new("", PlotPoint::new(at[0], at[1]), "knee\u{a0}\u{a0}\u{a0}");
-        let text = text.color(colors.ink).anchor(Align2::RIGHT_BOTTOM);
-        Some((ring(at, 6.0, colors.ink), Some(text)))
+        Some((ring(at, 6.0, colors.ink), Some(text_before(at, "knee", colors.ink))))
     }
 
     /// The designs that answer wishes, with their names.
     fn wished<'a>(&self, session: &Session, colors: Colors) -> Vec<LabelledPoints<'a>> {
         let mark = |wished: &Wished| {
             let at = self.place(&Row::new(0, &wished.evaluation));
-            let color = theme::modified(colors.dark);
-            let points = Points::new("", vec![at]).shape(MarkerShape::Diamond).radius(6.0);
-            let name = format!("{}{}", "\u{a0}".repeat(5), wished.name);
-            let text = Text::new("", PlotPoint::new(at[0], at[1]), name);
-            let text = text.color(colors.ink).anchor(Align2::LEFT_CENTER);
-            (points.color(color).allow_hover(false), Some(text))
+            let diamond = points(vec![at], MarkerShape::Diamond, 6.0, theme::modified(colors.dark));
+            (diamond, Some(text_after(at, 5, &wished.name, colors.ink)))
         };
         session.document().wished.iter().map(mark).collect()
     }
@@ -233,15 +223,10 @@ impl Scatter {
             let value = held.or(Some(point.wished).filter(|_| quantity == first))?;
             Some(axis.place(value))
         };
-        let [Some(x), Some(y)] = self.axes.map(place) else {
-            return None;
-        };
-        let text = Text::new("", PlotPoint::new(x, y), format!("{}why not?", "\u{a0}".repeat(5)));
-        let points = Points::new("", vec![[x, y]]).shape(MarkerShape::Cross).radius(6.0);
-        Some((
-            points.color(colors.ink).allow_hover(false),
-            Some(text.color(colors.ink).anchor(Align2::LEFT_CENTER)),
-        ))
+        let [x, y] = self.axes.map(place);
+        let at = [x?, y?];
+        let cross = points(vec![at], MarkerShape::Cross, 6.0, colors.ink);
+        Some((cross, Some(text_after(at, 5, "why not?", colors.ink))))
     }
 
     /// The reference designs where this model places them (star), joined to where their source states them (ring).
@@ -269,22 +254,29 @@ impl Scatter {
                 lines.push(line);
                 marks.push((ring(stated, 4.0, theme::mix(colors.ink, colors.ground, 0.7)), None));
             }
-            let name = format!("{}{}", "\u{a0}".repeat(6), reference.name);
-            let text = Text::new("", PlotPoint::new(at[0], at[1]), name);
-            let points = Points::new("", vec![at]).shape(MarkerShape::Asterisk).radius(6.0);
-            marks.push((
-                points.color(colors.ink).allow_hover(false),
-                Some(text.color(colors.ink).anchor(Align2::LEFT_CENTER)),
-            ));
+            let star = points(vec![at], MarkerShape::Asterisk, 6.0, colors.ink);
+            marks.push((star, Some(text_after(at, 6, &reference.name, colors.ink))));
         }
     }
 }
 
+fn points<'a>(at: Vec<[f64; 2]>, shape: MarkerShape, radius: f32, color: Color32) -> Points<'a> {
+    let points = Points::new("", at).shape(shape).radius(radius);
+    points.color(color).allow_hover(false)
+}
+
 fn ring<'a>(at: [f64; 2], radius: f32, color: Color32) -> Points<'a> {
-    Points::new("", vec![at])
-        .radius(radius)
-        .filled(false)
-        .color(color)
-        .shape(MarkerShape::Circle)
-        .allow_hover(false)
+    points(vec![at], MarkerShape::Circle, radius, color).filled(false)
+}
+
+/// Writes a text above a mark and before it.
+fn text_before(at: [f64; 2], text: &str, color: Color32) -> Text {
+    let text = Text::new("", at.into(), format!("{text}\u{a0}\u{a0}\u{a0}"));
+    text.color(color).anchor(Align2::RIGHT_BOTTOM)
+}
+
+/// Writes a text after a mark, from which `spaces` keep it away.
+fn text_after(at: [f64; 2], spaces: usize, text: &str, color: Color32) -> Text {
+    let text = Text::new("", at.into(), format!("{}{text}", "\u{a0}".repeat(spaces)));
+    text.color(color).anchor(Align2::LEFT_CENTER)
 }

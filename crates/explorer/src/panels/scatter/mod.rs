@@ -99,8 +99,7 @@ impl Scatter {
 
     /// Returns the position of a design on screen in the last frame.
     pub fn screen_position(&self, row: &Row) -> Option<Pos2> {
-        let [x, y] = self.place(row);
-        Some(self.transform?.position_from_point(&PlotPoint::new(x, y)))
+        Some(self.transform?.position_from_point(&self.place(row).into()))
     }
 
     fn place(&self, row: &Row) -> [f64; 2] {
@@ -245,9 +244,9 @@ impl Scatter {
         self.extent.update(self.axes, session.era(), session.store());
         let mut bounds = self.extent.bounds();
         for reference in session.references().iter().filter(|_| self.fitted) {
-            let [x, y] = self.place(&Row::new(0, &reference.evaluation));
-            if x.is_finite() && y.is_finite() {
-                bounds.extend_with(&PlotPoint::new(x, y));
+            let at = self.place(&Row::new(0, &reference.evaluation));
+            if at.iter().all(|part| part.is_finite()) {
+                bounds.extend_with(&at.into());
             }
         }
         bounds
@@ -330,10 +329,7 @@ impl Scatter {
                         .selectable_label(axis.quantity == quantity, quantity.title())
                         .clicked()
                     {
-                        *axis = ScatterAxis {
-                            quantity,
-                            log: quantity.is_logarithmic(),
-                        };
+                        *axis = ScatterAxis::usual(quantity);
                     }
                 }
             })
@@ -355,8 +351,8 @@ impl Scatter {
             return;
         }
         let near = |row: &Row| {
-            let [x, y] = self.place(row);
-            transform.position_from_point(&PlotPoint::new(x, y)).distance(pointer)
+            let at = transform.position_from_point(&self.place(row).into());
+            at.distance(pointer)
         };
         const REACH: f32 = 9.0;
         let reference = session
@@ -446,7 +442,7 @@ impl Scatter {
             high: bounds.max(),
             scale: self.scale,
             style: Style {
-                axes: self.axes.map(|axis| (axis.quantity, axis.log)),
+                axes: self.axes,
                 coloring: self.coloring,
                 era: session.era(),
                 filter: session.document().filter.to_text(),
@@ -500,11 +496,7 @@ pub fn objective_columns(session: &Session) -> Vec<Column> {
 fn axes_of(objectives: &[Column]) -> [ScatterAxis; 2] {
     [0, 1].map(|place| {
         let base = Column::Dimension(DesignVariable::BaseRadius);
-        let quantity = objectives.get(place).copied().unwrap_or(base);
-        ScatterAxis {
-            quantity,
-            log: quantity.is_logarithmic(),
-        }
+        ScatterAxis::usual(objectives.get(place).copied().unwrap_or(base))
     })
 }
 
