@@ -15,6 +15,7 @@ use kinefront_export::{ExportSubject, Format, export, front_to_parquet};
 use kinefront_model::evaluation::GridChoice;
 use kinefront_recording::{record_design, save_copy};
 use kinefront_report::{Options, Report, Source};
+use kinefront_scene::Field;
 use kinefront_study::{Cell, Column, replace, table_bytes, write_whole};
 
 /// Work on files that does not block the window; it returns a message for the user.
@@ -31,12 +32,8 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
         }
         Purpose::SaveFilter => {
             let text = session.document().filter.to_text();
-            notify(
-                session,
-                write_whole(&path, text.as_bytes())
-                    .map(|()| format!("saved {}", path.display()))
-                    .map_err(AnyError::from),
-            );
+            let saved = write_whole(&path, text.as_bytes()).map_err(AnyError::from);
+            notify(session, saved.map(|()| format!("saved {}", path.display())));
         }
         Purpose::OpenFilter => match read_filter(&path) {
             Ok(filter) => session.edit(|document| document.filter = filter),
@@ -51,15 +48,20 @@ pub fn act(session: &mut Session, purpose: Purpose, path: PathBuf) -> Option<Job
             let written = table().and_then(|table| Ok(write_whole(&path, &table)?));
             notify(session, written.map(|()| format!("exported {}", path.display())));
         }
-        Purpose::SaveRecording => return save_recording(session, path),
-        Purpose::RecordDesign => return record(session, path),
-        Purpose::ExportDesign(format) => return export_design(session, format, path),
-        Purpose::SaveRun => return save_run(session, path),
-        Purpose::Report => return report(session, path),
+        Purpose::SaveRecording => return begun(save_recording(session, path), session),
+        Purpose::RecordDesign => return begun(record(session, path), session),
+        Purpose::ExportDesign(format) => return begun(export_design(session, format, path), session),
+        Purpose::SaveRun => return begun(save_run(session, path), session),
+        Purpose::Report => return begun(report(session, path), session),
         // The window takes the picture itself.
         Purpose::SavePicture => {}
     }
     None
+}
+
+/// Returns a job, or tells why there is none.
+fn begun(job: Result<Job, &'static str>, session: &mut Session) -> Option<Job> {
+    job.map_err(|words| session.notify_error(words)).ok()
 }
 
 fn notify(session: &mut Session, outcome: Result<String, AnyError>) {
@@ -69,18 +71,18 @@ fn notify(session: &mut Session, outcome: Result<String, AnyError>) {
     }
 }
 
-fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
-    let Some(folder) = session.run_folder() else {
-        session.notify_error("there is no run to save; an opened run is already on disk".to_owned());
-        return None;
-    };
+const NO_RUN: &str = "there is no run to save; an opened run is already on disk";
+const NO_DESIGN: &str = "no design is selected";
+
+fn save_recording(session: &Session, path: PathBuf) -> Result<Job, &'static str> {
+    let folder = session.run_folder().ok_or(NO_RUN)?;
     let writing = session.writing();
     let study = session.prepared();
     let shown = session
         .known()
         .map(|known| known.evaluation.clone())
         .zip(session.selected_name());
-    Some(Box::new(move || {
+    Ok(Box::new(move || {
         writing.iter().for_each(Writing::wait);
         let shown = shown
             .as_ref()
@@ -93,14 +95,11 @@ fn save_recording(session: &mut Session, path: PathBuf) -> Option<Job> {
 }
 
 /// Exports the selected design at the pose that is shown.
-fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option<Job> {
-    let Some(known) = session.known().cloned() else {
-        session.notify_error("no design is selected".to_owned());
-        return None;
-    };
+fn export_design(session: &Session, format: Format, path: PathBuf) -> Result<Job, &'static str> {
+    let known = session.known().cloned().ok_or(NO_DESIGN)?;
     let study = session.prepared();
     let pose = session.view().pose;
-    Some(Box::new(move || {
+    Ok(Box::new(move || {
         // The export contains the values from the fine grid.
         let fine = if known.verified {
             (*known.evaluation).clone()
@@ -119,18 +118,11 @@ fn export_design(session: &mut Session, format: Format, path: PathBuf) -> Option
     }))
 }
 
-fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
-    let Some((known, name)) = session.known().cloned().zip(session.selected_name()) else {
-        session.notify_error("no design is selected".to_owned());
-        return None;
-    };
+fn record(session: &Session, path: PathBuf) -> Result<Job, &'static str> {
+    let (known, name) = session.known().cloned().zip(session.selected_name()).ok_or(NO_DESIGN)?;
     let study = session.prepared();
-    let field = session
-        .view()
-        .layers
-        .heatmap
-        .unwrap_or(kinefront_scene::Field::DEXTERITY);
-    Some(Box::new(move || {
+    let field = session.view().layers.heatmap.unwrap_or(Field::DEXTERITY);
+    Ok(Box::new(move || {
         replace(&path, |part| {
             Ok::<_, AnyError>(record_design(part, &study, &known.evaluation, &name, Some(field))?)
         })?;
@@ -139,13 +131,10 @@ fn record(session: &mut Session, path: PathBuf) -> Option<Job> {
 }
 
 /// Saves the run folder with a complete recording; `path` must not contain a run.
-fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
-    let Some(folder) = session.run_folder() else {
-        session.notify_error("there is no run to save; an opened run is already on disk".to_owned());
-        return None;
-    };
+fn save_run(session: &Session, path: PathBuf) -> Result<Job, &'static str> {
+    let folder = session.run_folder().ok_or(NO_RUN)?;
     let writing = session.writing();
-    Some(Box::new(move || {
+    Ok(Box::new(move || {
         writing.iter().for_each(Writing::wait);
         let failed = |what: &Path, error: std::io::Error| format!("cannot write {}: {error}", what.display());
         std::fs::create_dir_all(&path).map_err(|error| failed(&path, error))?;
@@ -168,18 +157,16 @@ fn save_run(session: &mut Session, path: PathBuf) -> Option<Job> {
 }
 
 /// Writes the report on the run in the window, without the report's own searches, which would take minutes.
-fn report(session: &mut Session, path: PathBuf) -> Option<Job> {
+fn report(session: &mut Session, path: PathBuf) -> Result<Job, &'static str> {
     let opened = match session.phase() {
         Phase::Opened(path) if path.is_dir() => Some(path.clone()),
         _ => None,
     };
-    let Some(folder) = session.run_folder().or(opened) else {
-        session.notify_error("there is no run to report on; start a run or open a run folder".to_owned());
-        return None;
-    };
+    let folder = session.run_folder().or(opened);
+    let folder = folder.ok_or("there is no run to report on; start a run or open a run folder")?;
     let writing = session.writing();
     session.notify("writing the report; this takes several seconds".to_owned());
-    Some(Box::new(move || {
+    Ok(Box::new(move || {
         writing.iter().for_each(Writing::wait);
         let options = Options {
             command: "File › Create report, in the window".to_owned(),
