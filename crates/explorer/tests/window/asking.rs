@@ -1,20 +1,17 @@
 //! Questions about designs, asked in the window: wishes, why not, prices along the front, and what stands in the way.
 
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use kinefront_explorer::{DesignOrigin, InitialContent, Panel};
+use egui_kittest::kittest::Queryable as _;
+use kinefront_explorer::{DesignOrigin, Panel, Purpose};
 use kinefront_model::evaluation::{PoseScalar, Quantity};
 use kinefront_study::Study;
 
-use super::support::{Window, click_at, opened_window, set_slider, small_study, until, window};
+use super::support::{
+    Window, act, click, click_at, content, opened_window, press_with, set_slider, show, small_study, told, until,
+    until_seen, until_verified, window,
+};
 
 const K_XY: Quantity = Quantity::Worst(PoseScalar::StiffnessXy);
-
-/// Returns what a label that contains some text says.
-fn told(window: &Window, text: &str) -> Option<String> {
-    let found = window.query_all_by_label_contains(text).next()?;
-    found.value().or_else(|| found.accesskit_node().label())
-}
 
 /// Runs a study of one architecture in a window of its own.
 fn run_of(change: impl FnOnce(&mut Study)) -> Window {
@@ -25,11 +22,7 @@ fn run_of(change: impl FnOnce(&mut Study)) -> Window {
     study.optimizer.evaluations = 150;
     change(&mut study);
     let evaluations = study.optimizer.evaluations;
-    let mut window = window(InitialContent::Study {
-        study: Box::new(study),
-        path: None,
-        start: true,
-    });
+    let mut window = window(content(study, true));
     until(&mut window, "the run ends", |explorer| {
         let session = explorer.session();
         let is_verified = session.front().iter().all(|entry| entry.verified);
@@ -41,13 +34,11 @@ fn run_of(change: impl FnOnce(&mut Study)) -> Window {
 #[test]
 fn a_wish_becomes_a_design_and_undo_takes_it_back() {
     let mut window = opened_window();
-    window.state_mut().show(Panel::Wish);
-    window.run_steps(3);
+    show(&mut window, Panel::Wish);
     let before = window.state().session().known().expect("known").evaluation.clone();
     let selected = window.state().session().document().selected.clone();
     set_slider(&mut window, "Desired change of k_xy", 10.0);
-    window.get_by_label("Find the design").click();
-    window.run_steps(2);
+    click(&mut window, "Find the design");
     until(&mut window, "the wish is answered", |explorer| {
         !explorer.session().is_wishing()
     });
@@ -69,18 +60,14 @@ fn a_wish_becomes_a_design_and_undo_takes_it_back() {
     assert!(value(&wished.evaluation) >= 1.1 * value(&before) * (1.0 - 1e-6));
     assert!(wished.evaluation.is_feasible() && start == Some(before.design));
     assert!(wished.evaluation.workspace_radius() >= before.workspace_radius() * (1.0 - 1e-6));
-    until(&mut window, "the design is shown", |explorer| {
-        explorer.session().known().is_some_and(|known| known.verified)
-    });
+    until_verified(&mut window);
     assert!(told(&window, "All conditions are met").is_some());
 
-    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    window.run_steps(3);
+    press_with(&mut window, Modifiers::COMMAND, Key::Z);
     let session = window.state().session();
     assert!(session.document().wished.is_empty());
     assert_eq!(session.document().selected, selected);
-    window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    window.run_steps(3);
+    press_with(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     assert_eq!(window.state().session().document().wished.len(), 1);
 }
 
@@ -117,8 +104,7 @@ fn a_click_beyond_the_front_asks_why() {
     show.expect("a link").click();
     window.run_steps(3);
     assert_ne!(window.state().session().document().selected, before);
-    window.get_by_label("Dismiss").click();
-    window.run_steps(3);
+    click(&mut window, "Dismiss");
     assert!(window.state().session().why_point().is_none());
     assert!(told(&window, "Click an empty place in the scatter").is_some());
 }
@@ -126,14 +112,10 @@ fn a_click_beyond_the_front_asks_why() {
 #[test]
 fn prices_along_the_front_are_told_in_sentences() {
     let mut window = opened_window();
-    window.state_mut().show(Panel::Prices);
-    window.run_steps(3);
-    let since = std::time::Instant::now();
-    while told(&window, "drives the mass").is_none() {
-        assert!(since.elapsed().as_secs() < 120, "no sentence");
-        std::thread::sleep(std::time::Duration::from_millis(10));
-        window.step();
-    }
+    show(&mut window, Panel::Prices);
+    until_seen(&mut window, "a sentence is told", |window| {
+        told(window, "drives the mass").is_some()
+    });
     assert!(told(&window, "Prices of the limits").is_some());
 }
 
@@ -144,17 +126,12 @@ fn a_run_without_designs_tells_what_stands_in_the_way() {
         study.optimizer.evaluations = 60;
     });
     assert!(window.state().session().is_hindered());
-    window.state_mut().show(Panel::WhyNot);
-    window.run_steps(3);
+    show(&mut window, Panel::WhyNot);
     assert!(told(&window, "No design of the run is feasible").is_some());
-    let since = std::time::Instant::now();
-    while window.query_by_label("Show the design for k_xy").is_none() {
-        assert!(since.elapsed().as_secs() < 120, "no answer");
-        std::thread::sleep(std::time::Duration::from_millis(10));
-        window.step();
-    }
-    window.get_by_label("Show the design for k_xy").click();
-    window.run_steps(3);
+    until_seen(&mut window, "the question is answered", |window| {
+        window.query_by_label("Show the design for k_xy").is_some()
+    });
+    click(&mut window, "Show the design for k_xy");
     assert!(window.state().session().document().selected.is_some());
 }
 
@@ -166,22 +143,14 @@ fn a_second_run_is_compared_with_the_first() {
         study.material.youngs_modulus_pa = 70e9;
     });
     let folder = tempfile::tempdir().expect("a folder");
-    let ctx = softer.ctx.clone();
     let path = folder.path().join("softer");
-    softer
-        .state_mut()
-        .act(&ctx, kinefront_explorer::Purpose::SaveRun, path.clone());
-    until(&mut softer, "the run is saved", |explorer| !explorer.is_busy());
+    act(&mut softer, Purpose::SaveRun, &path);
     assert!(path.join("front.csv").exists());
 
     // Fronts of few designs have none near most radii.
     let mut window = run_of(|study| study.optimizer.front_designs = 24);
-    let ctx = window.ctx.clone();
-    window
-        .state_mut()
-        .act(&ctx, kinefront_explorer::Purpose::OpenBeside, path);
-    window.state_mut().show(Panel::Beside);
-    window.run_steps(4);
+    act(&mut window, Purpose::OpenBeside, &path);
+    show(&mut window, Panel::Beside);
     assert!(told(&window, "small and softer").is_some());
     assert!(window.query_by_label("material.youngs_modulus_pa").is_some());
     let levels = window.state().session().levels_beside();
@@ -192,13 +161,10 @@ fn a_second_run_is_compared_with_the_first() {
     assert!(both.len() > 3, "{levels:?}");
     // A softer material is heavier wherever both have a design.
     assert!(both.iter().all(|[stiff, soft]| soft > stiff), "{levels:?}");
-    window.get_by_label("Close softer").click();
-    window.run_steps(3);
+    click(&mut window, "Close softer");
     assert!(window.state().session().beside().is_none());
     // A folder that is no run is refused.
-    window
-        .state_mut()
-        .act(&ctx, kinefront_explorer::Purpose::OpenBeside, folder.path().to_owned());
+    act(&mut window, Purpose::OpenBeside, folder.path());
     assert!(window.state().session().beside().is_none());
     assert!(window.state().session().notices().iter().any(|notice| notice.is_error));
 }

@@ -7,7 +7,10 @@ use kinefront_explorer::{Panel, StudyEditor};
 use kinefront_model::evaluation::Quantity;
 use kinefront_study::{BUILTIN, Column};
 
-use super::support::{Window, copied_text, idle_window, opened_window, until};
+use super::support::{
+    Window, change_study, click, copied_text, drag, edited, idle_window, opened_window, press, press_with, show, told,
+    until,
+};
 
 /// Returns the controls without a name, or with a symbol alone as their name, which a screen reader cannot read.
 fn nameless(window: &Window) -> Vec<String> {
@@ -40,8 +43,7 @@ fn every_control_has_a_name() {
     let mut window = opened_window();
     window.state_mut().session_mut().toggle_pin();
     for &panel in Panel::ALL.iter().filter(|panel| **panel != Panel::Scene) {
-        window.state_mut().show(panel);
-        window.run_steps(4);
+        show(&mut window, panel);
         let found = nameless(&window);
         assert!(found.is_empty(), "{}: {found:#?}", panel.title());
     }
@@ -55,8 +57,7 @@ fn the_tab_key_reaches_every_area_and_a_ring_shows_where() {
     assert_eq!(window.state().focus_ring(), None);
     let mut reached = std::collections::BTreeSet::new();
     for _ in 0..800 {
-        window.key_press(Key::Tab);
-        window.run_steps(2);
+        press(&mut window, Key::Tab);
         let focused = window
             .root()
             .children_recursive()
@@ -90,25 +91,6 @@ fn the_tab_key_reaches_every_area_and_a_ring_shows_where() {
     assert_eq!(window.state().focus_ring(), None);
 }
 
-/// Drags the mouse along a path.
-fn drag(window: &mut Window, path: &[Pos2]) {
-    window.hover_at(path[0]);
-    window.run_steps(2);
-    window.drag_at(path[0]);
-    window.run_steps(2);
-    for &at in &path[1..] {
-        window.hover_at(at);
-        window.run_steps(2);
-    }
-    window.event(egui::Event::PointerButton {
-        pos: path[path.len() - 1],
-        button: egui::PointerButton::Primary,
-        pressed: false,
-        modifiers: Modifiers::NONE,
-    });
-    window.run_steps(3);
-}
-
 #[test]
 fn designs_in_a_box_are_marked_counted_listed_and_filtered() {
     let mut window = opened_window();
@@ -124,8 +106,7 @@ fn designs_in_a_box_are_marked_counted_listed_and_filtered() {
             rect.union(egui::Rect::from_min_size(at, vec2(0.0, 0.0)))
         })
         .expand(1.5);
-    window.get_by_label("Box").click();
-    window.run_steps(2);
+    click(&mut window, "Box");
     drag(
         &mut window,
         &[around.left_top(), around.center(), around.right_bottom()],
@@ -154,19 +135,12 @@ fn designs_in_a_box_are_marked_counted_listed_and_filtered() {
     assert!(masses.is_sorted(), "sorted by mass: {masses:?}");
 
     // The filter takes their ranges, and undo takes both back.
-    window.get_by_label("Filter").click();
-    window.run_steps(3);
-    let range = window
-        .state()
-        .session()
-        .document()
-        .filter
-        .range(Column::Quantity(Quantity::Mass))
-        .expect("a range");
-    assert_eq!(range, [masses[0], masses[masses.len() - 1]]);
+    click(&mut window, "Filter");
+    let filter = &window.state().session().document().filter;
+    let range = filter.range(Column::Quantity(Quantity::Mass));
+    assert_eq!(range, Some([masses[0], masses[masses.len() - 1]]));
     for _ in 0..2 {
-        window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-        window.run_steps(3);
+        press_with(&mut window, Modifiers::COMMAND, Key::Z);
     }
     let document = window.state().session().document();
     assert!(document.marked.is_empty() && document.filter.is_empty());
@@ -185,8 +159,7 @@ fn a_lasso_marks_what_it_surrounds() {
             place.is_some_and(|place| place.distance(at) < 9.5)
         })
         .collect();
-    window.get_by_label("Lasso").click();
-    window.run_steps(2);
+    click(&mut window, "Lasso");
     let corner = |k: usize| {
         let angle = std::f32::consts::TAU * k as f32 / 12.0;
         at + 9.0 * vec2(angle.cos(), angle.sin())
@@ -204,15 +177,12 @@ fn a_lasso_marks_what_it_surrounds() {
 #[test]
 fn the_table_shows_the_columns_that_are_chosen() {
     let mut window = opened_window();
-    window.state_mut().show(Panel::Front);
-    window.run_steps(3);
+    show(&mut window, Panel::Front);
     assert!(window.query_by_role_and_label(Role::Button, "margin g3").is_none());
-    window.get_by_label("Columns").click();
-    window.run_steps(3);
+    click(&mut window, "Columns");
     window.get_by_role_and_label(Role::CheckBox, "margin g3").click();
     window.run_steps(3);
-    window.key_press(Key::Escape);
-    window.run_steps(3);
+    press(&mut window, Key::Escape);
     window
         .get_by_role_and_label(Role::Button, "margin g3")
         .click_accesskit();
@@ -224,28 +194,16 @@ fn the_table_shows_the_columns_that_are_chosen() {
 fn a_change_of_the_study_is_undone_and_a_new_study_begins_from_an_example() {
     let mut window = idle_window();
     *window.state_mut().session_mut().editor_mut() = StudyEditor::paper();
-    window.state_mut().show(Panel::Study);
-    window.run_steps(3);
-    assert!(
-        window
-            .query_by_label_contains("Lengths R, r, L_b of the 3-PRR")
-            .is_some()
-    );
-    window
-        .state_mut()
-        .session_mut()
-        .editor_mut()
-        .change(|study| study.optimizer.seed = 77);
+    show(&mut window, Panel::Study);
+    assert!(told(&window, "Lengths R, r, L_b of the 3-PRR").is_some());
+    change_study(&mut window, |study| study.optimizer.seed = 77);
     window.run_steps(2);
-    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    window.run_steps(2);
-    assert_eq!(window.state().session().editor().study().optimizer.seed, 1);
-    window.get_by_label("Redo").click();
-    window.run_steps(2);
-    assert_eq!(window.state().session().editor().study().optimizer.seed, 77);
+    press_with(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!(edited(&window).optimizer.seed, 1);
+    click(&mut window, "Redo");
+    assert_eq!(edited(&window).optimizer.seed, 77);
 
-    window.get_by_label("File").click();
-    window.run_steps(3);
+    click(&mut window, "File");
     window.get_by_label("New study from an example").click();
     // A picture is made in a frame.
     window.run_steps(BUILTIN.len() + 2);
@@ -260,14 +218,13 @@ fn a_change_of_the_study_is_undone_and_a_new_study_begins_from_an_example() {
     window.run_steps(3);
     // The study that was edited is in view.
     assert!(window.query_by_label_contains("Save study").is_some());
-    assert_eq!(window.state().session().editor().study().name, other.name);
+    assert_eq!(edited(&window).name, other.name);
 }
 
 #[test]
 fn the_progress_of_a_run_states_the_time_that_designs_take() {
     let mut window = idle_window();
-    window.get_by_label("▶ Start").click();
-    window.run_steps(4);
+    click(&mut window, "▶ Start");
     until(&mut window, "the run ends", |explorer| !explorer.session().is_running());
     let session = window.state().session();
     let times = session.generation_times();

@@ -1,14 +1,13 @@
 //! Dragging the platform in the 3-D view: what the viewer sees of it, and where the platform goes.
 
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2};
-use egui_kittest::kittest::Queryable as _;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use kinefront_explorer::{Eye, Panel, PlatformDrag, SceneView, Session};
 use kinefront_model::mechanism::MemberKind;
 use kinefront_model::spatial::Pose;
 use kinefront_study::{ObstacleSection, RegionKind};
 
-use crate::support::opened_window;
+use super::support::{TopView, change_study, drag, opened_window};
 
 /// An eye above the front of the machine.
 fn view() -> SceneView {
@@ -154,12 +153,8 @@ fn an_obstacle_is_moved_in_the_plan_and_the_study_follows() {
     let mut window = opened_window();
     window.state_mut().show(Panel::Pose);
     let design = window.state().session().known().expect("a design").evaluation.design;
-    let reach = 1.25
-        * design
-            .base_radius()
-            .max(0.5 * (design.platform_radius() + design.link_length()));
     let place = DVec2::new(-0.7, 0.6) * design.base_radius();
-    window.state_mut().session_mut().editor_mut().change(|study| {
+    change_study(&mut window, |study| {
         study.requirements.clearance_min_m = Some(0.0);
         study.obstacles.push(ObstacleSection {
             name: "column".to_owned(),
@@ -173,24 +168,16 @@ fn an_obstacle_is_moved_in_the_plan_and_the_study_follows() {
     assert!(faults.is_empty(), "{faults:?}");
     window.run_steps(4);
     let pose = window.state().session().pose();
-    let plan = window.get_by_label("Top view").rect();
-    let scale = 0.5 * f64::from(plan.width().min(plan.height())) / reach;
-    let screen = |at: DVec2| plan.center() + egui::vec2((at.x * scale) as f32, -(at.y * scale) as f32);
     let by = DVec2::new(0.3, -0.1) * design.base_radius();
-    window.hover_at(screen(place));
-    window.run_steps(2);
-    window.drag_at(screen(place));
-    window.run_steps(2);
-    for share in [0.5, 1.0] {
-        window.hover_at(screen(place + by * share));
-        window.run_steps(2);
-    }
-    window.drop_at(screen(place + by));
-    window.run_steps(2);
+    let plan = TopView::of(&window);
+    drag(
+        &mut window,
+        &[0.0, 0.5, 1.0].map(|share| plan.screen(place + by * share)),
+    );
     let session = window.state().session();
     let moved = DVec2::from_array(session.editor().study().obstacles[0].centre_m);
     assert!(
-        (moved - place - by).length() < 2.0 / scale,
+        (moved - place - by).length() < 2.0 / plan.scale,
         "{moved} instead of {}",
         place + by
     );

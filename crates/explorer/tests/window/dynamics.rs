@@ -5,7 +5,7 @@ use kinefront_explorer::{Panel, ShownVibration};
 
 use kinefront_scene::text::member as member_words;
 
-use super::support::{Window, opened_window, set_slider, type_into};
+use super::support::{Window, change_study, click, opened_window, press, set_slider, show, type_into};
 
 fn shown(window: &Window) -> Option<ShownVibration> {
     window.state().session().view().vibration
@@ -16,8 +16,7 @@ fn shown(window: &Window) -> Option<ShownVibration> {
 #[test]
 fn a_vibration_is_played_and_follows_the_payload() {
     let mut window = opened_window();
-    window.state_mut().show(Panel::Vibration);
-    window.run_steps(3);
+    show(&mut window, Panel::Vibration);
     assert_eq!(shown(&window), None);
     let frequencies = |window: &mut Window| {
         let known = window.state_mut().session_mut().pose_dynamics().cloned();
@@ -38,8 +37,7 @@ fn a_vibration_is_played_and_follows_the_payload() {
         .collect();
     let is_single = |place: &usize| names.iter().filter(|name| **name == names[*place]).count() == 1;
     let place = (0..6).find(is_single).expect("a single frequency");
-    window.get_by_label(&names[place]).click();
-    window.run_steps(2);
+    click(&mut window, &names[place]);
     let first = shown(&window).expect("a vibration");
     assert_eq!(first.mode, place);
     let mut shares = Vec::new();
@@ -51,16 +49,11 @@ fn a_vibration_is_played_and_follows_the_payload() {
     let most = shares.iter().fold(0.0, |most: f64, share| most.max(*share));
     let least = shares.iter().fold(0.0, |least: f64, share| least.min(*share));
     assert!(most > 0.07 && least < -0.07, "{least} to {most}");
-    window.get_by_label("Pause").click();
-    window.run_steps(3);
+    click(&mut window, "Pause");
     let still = shown(&window);
     window.run_steps(5);
     assert_eq!(shown(&window), still);
-    window
-        .state_mut()
-        .session_mut()
-        .editor_mut()
-        .change(|study| study.payload.mass_kg = 500.0);
+    change_study(&mut window, |study| study.payload.mass_kg = 500.0);
     window.run_steps(2);
     let after = frequencies(&mut window);
     // A mass at P moves with neither the tilts nor the turn.
@@ -69,8 +62,7 @@ fn a_vibration_is_played_and_follows_the_payload() {
         .zip(&before)
         .filter(|(after, before)| **after < 0.999 * **before);
     assert_eq!(lower.count(), 3, "{before:?} and {after:?}");
-    window.get_by_label("Hide").click();
-    window.run_steps(2);
+    click(&mut window, "Hide");
     assert_eq!(shown(&window), None);
 }
 
@@ -78,10 +70,9 @@ fn a_vibration_is_played_and_follows_the_payload() {
 #[test]
 fn errors_follow_the_tolerances() {
     let mut window = opened_window();
-    window.state_mut().show(Panel::Accuracy);
-    window.run_steps(3);
+    show(&mut window, Panel::Accuracy);
     window.get_by_label("Set tolerances to compute the pose errors:");
-    window.state_mut().session_mut().editor_mut().change(|study| {
+    change_study(&mut window, |study| {
         study.tolerances.encoder_m = 1e-5;
         study.tolerances.encoder_rad = 1e-5;
         study.tolerances.link_m = 5e-5;
@@ -110,8 +101,7 @@ fn errors_follow_the_tolerances() {
 #[test]
 fn stresses_follow_a_wrench_that_is_turned() {
     let mut window = opened_window();
-    window.state_mut().show(Panel::Strength);
-    window.run_steps(3);
+    show(&mut window, Panel::Strength);
     let wrench = |window: &Window| window.state().session().view().layers.wrench;
     let report = |window: &Window| {
         let session = window.state().session();
@@ -134,22 +124,17 @@ fn stresses_follow_a_wrench_that_is_turned() {
     };
     assert_eq!(wrench(&window), None);
     let of_study = check(&window);
-    window.get_by_label("under one wrench, drawn as arrows at P").click();
-    window.run_steps(2);
+    click(&mut window, "under one wrench, drawn as arrows at P");
     assert_eq!(wrench(&window), Some([100.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
     assert!(check(&window) <= of_study);
     type_into(&mut window, "force along z", "-250");
-    window.key_press(egui::Key::Enter);
-    window.run_steps(3);
+    press(&mut window, egui::Key::Enter);
     set_slider(&mut window, "direction", 90.0);
     window.run_steps(3);
     let [x, y, z, ..] = wrench(&window).expect("a wrench");
     assert!(x.abs() < 1e-9 && (y - 100.0).abs() < 1e-9 && z == -250.0, "{x} {y} {z}");
     check(&window);
-    window
-        .get_by_label("under the loads of the study, in their worst directions")
-        .click();
-    window.run_steps(2);
+    click(&mut window, "under the loads of the study, in their worst directions");
     assert_eq!(wrench(&window), None);
     assert_eq!(check(&window), of_study);
 }

@@ -8,14 +8,16 @@ use kinefront_model::evaluation::{MemberReport, Quantity, QuantitySet};
 use kinefront_model::mechanism::{DesignVariable, MemberKind};
 use kinefront_study::{Column, EndReason};
 
-use super::support::{click_at, idle_window, opened_window, set_slider, until, until_settled};
+use super::support::{
+    TopView, change_study, click, click_at, idle_window, opened_window, press, press_with, selected, selected_id,
+    set_slider, told, until, until_settled,
+};
 
 #[test]
 fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_restores() {
     let mut window = idle_window();
     assert_eq!(*window.state().session().phase(), Phase::Ready);
-    window.get_by_label("▶ Start").click();
-    window.run_steps(4);
+    click(&mut window, "▶ Start");
     until(&mut window, "the run ends", |explorer| {
         *explorer.session().phase() == Phase::Finished(EndReason::Completed)
     });
@@ -59,29 +61,21 @@ fn a_run_is_started_and_a_click_shows_a_design_that_a_slider_changes_and_undo_re
     assert_ne!(modify.mass(), 0.0);
     assert_eq!(modify.design, changed.design);
 
-    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    window.run_steps(3);
+    press_with(&mut window, Modifiers::COMMAND, Key::Z);
     assert_eq!(window.state().session().document().selected, Some(selected));
-    window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    window.run_steps(3);
+    press_with(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     assert_eq!(window.state().session().document().selected, Some(changed));
 }
 
 #[test]
 fn a_run_is_paused_stepped_resumed_stopped_and_started_again() {
     let mut window = idle_window();
-    window
-        .state_mut()
-        .session_mut()
-        .editor_mut()
-        .change(|study| study.optimizer.evaluations = 30_000);
-    window.get_by_label("▶ Start").click();
-    window.run_steps(4);
+    change_study(&mut window, |study| study.optimizer.evaluations = 30_000);
+    click(&mut window, "▶ Start");
     until(&mut window, "designs arrive", |explorer| {
         explorer.session().store().len() >= 60
     });
-    window.get_by_label("⏸ Pause").click();
-    window.run_steps(4);
+    click(&mut window, "⏸ Pause");
     assert_eq!(*window.state().session().phase(), Phase::Paused);
     // The current generation is still completed, and its messages arrive.
     until(&mut window, "the run waits", |explorer| explorer.session().is_waiting());
@@ -106,8 +100,7 @@ fn a_run_is_paused_stepped_resumed_stopped_and_started_again() {
     });
     let designs = window.state().session().store().len();
     assert!(designs < 30_000 && window.state().session().front().iter().all(|entry| entry.verified));
-    window.get_by_label("▶ Start").click();
-    window.run_steps(3);
+    click(&mut window, "▶ Start");
     assert!(window.state().session().store().len() < designs);
     window.state_mut().session_mut().close();
 }
@@ -116,37 +109,21 @@ fn a_run_is_paused_stepped_resumed_stopped_and_started_again() {
 fn arrow_keys_walk_along_the_lit_front_and_p_pins() {
     let mut window = opened_window();
     let front: Vec<usize> = window.state().session().front().iter().map(|entry| entry.id).collect();
-    let here = |window: &super::support::Window| match window
-        .state()
-        .session()
-        .document()
-        .selected
-        .as_ref()
-        .map(|c| c.origin.clone())
-    {
-        Some(DesignOrigin::Evaluated(id)) => id,
-        other => panic!("{other:?}"),
-    };
-    let knee = here(&window);
+    let knee = selected_id(&window);
     let place = front.iter().position(|&id| id == knee).expect("on the front");
-    window.key_press(Key::ArrowRight);
-    window.run_steps(2);
-    assert_eq!(here(&window), front[(place + 1).min(front.len() - 1)]);
-    window.key_press(Key::ArrowLeft);
-    window.run_steps(2);
-    assert_eq!(here(&window), knee);
+    press(&mut window, Key::ArrowRight);
+    assert_eq!(selected_id(&window), front[(place + 1).min(front.len() - 1)]);
+    press(&mut window, Key::ArrowLeft);
+    assert_eq!(selected_id(&window), knee);
     for _ in 0..front.len() {
         window.key_press(Key::ArrowLeft);
     }
     window.run_steps(2);
-    assert_eq!(here(&window), front[0]);
+    assert_eq!(selected_id(&window), front[0]);
 
-    window.key_press(Key::P);
-    window.run_steps(2);
-    window.key_press(Key::K);
-    window.run_steps(2);
-    window.key_press(Key::P);
-    window.run_steps(2);
+    press(&mut window, Key::P);
+    press(&mut window, Key::K);
+    press(&mut window, Key::P);
     let pins = &window.state().session().document().pins;
     assert_eq!(pins.len(), 2);
     assert_eq!(pins[0].name, format!("#{}", front[0]));
@@ -157,8 +134,7 @@ fn one_filter_holds_everywhere() {
     let mut window = opened_window();
     let all = window.state().session().front().len();
     let architecture = window.state().session().front()[0].row.design.architecture();
-    window.get_by_label(&format!("include {architecture}")).click();
-    window.run_steps(3);
+    click(&mut window, &format!("include {architecture}"));
     let document = window.state().session().document().clone();
     assert_eq!(document.filter.hidden, [architecture]);
     let toggled = window
@@ -168,8 +144,7 @@ fn one_filter_holds_everywhere() {
     assert_eq!(toggled, Some(Toggled::False));
     // Designs that do not pass the filter are dimmed, not removed.
     assert_eq!(window.state().session().front().len(), all);
-    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    window.run_steps(2);
+    press_with(&mut window, Modifiers::COMMAND, Key::Z);
     assert!(window.state().session().document().filter.is_empty());
 
     let (low, high) = (0.3, 0.9);
@@ -178,17 +153,11 @@ fn one_filter_holds_everywhere() {
             .filter
             .set_range(Column::Quantity(Quantity::WorkspaceRadius), Some([low, high]));
     });
-    window.key_press(Key::ArrowRight);
-    window.run_steps(2);
+    press(&mut window, Key::ArrowRight);
     let session = window.state().session();
     let prepared = session.document().filter.prepare(session.store());
-    match session.document().selected.as_ref().map(|selected| &selected.origin) {
-        Some(DesignOrigin::Evaluated(id)) => assert!(
-            prepared.passes(*id),
-            "the arrow key selected #{id}, which does not pass"
-        ),
-        other => panic!("{other:?}"),
-    }
+    let id = selected_id(&window);
+    assert!(prepared.passes(id), "the arrow key selected #{id}, which does not pass");
     let passes_filter = (0..session.store().len()).filter(|&id| prepared.passes(id)).count();
     let inside = session
         .store()
@@ -204,21 +173,13 @@ fn one_filter_holds_everywhere() {
 fn the_platform_stops_at_its_limits_and_says_which() {
     let mut window = opened_window();
     set_slider(&mut window, "pose x", 3.9);
-    let stopped = window.get_by_label_contains("stopped: leg");
-    let words = stopped
-        .value()
-        .or_else(|| stopped.accesskit_node().label())
-        .expect("a reason");
+    let words = told(&window, "stopped: leg").expect("a reason");
     assert!(words.contains("reach") || words.contains("limit"), "{words}");
     let session = window.state().session();
-    let (pose, design) = (
-        session.pose().expect("a pose"),
-        session.document().selected.as_ref().expect("a design").design,
-    );
+    let (pose, design) = (session.pose().expect("a pose"), selected(&window).design);
     assert!(pose.position.x > 0.0);
     assert!(session.model().pose(&design, &pose).is_ok());
-    window.get_by_label("Home").click();
-    window.run_steps(3);
+    click(&mut window, "Home");
     assert_eq!(window.state().session().pose(), window.state().session().home());
     // The message ends with the design and the pose that it speaks of.
     set_slider(&mut window, "pose x", 3.9);
@@ -257,15 +218,8 @@ fn pointing_at_a_bar_tells_what_it_is() {
         .iter()
         .find(|report| report.member.kind != MemberKind::PlatformBar && bare(report))
         .expect("a member that no other member covers");
-    let view = window.get_by_label("Top view").rect();
-    let reach = 1.25
-        * design
-            .base_radius()
-            .max(0.5 * (design.platform_radius() + design.link_length()));
-    let scale = 0.5 * view.width().min(view.height()) / reach as f32;
-    let at = 0.5 * (report.from + report.to).truncate();
-    let pointer = view.center() + egui::vec2(at.x as f32, -at.y as f32) * scale;
-    window.hover_at(pointer);
+    let view = TopView::of(&window);
+    window.hover_at(view.screen(0.5 * (report.from + report.to).truncate()));
     window.run_steps(60);
     let name = format!(
         "{} of leg {}",
@@ -281,7 +235,7 @@ fn pointing_at_a_bar_tells_what_it_is() {
         100.0 * fraction.in_plane
     );
     assert!(window.query_all_by_label_contains(&words).count() > 0, "{words}");
-    window.hover_at(view.left_top() + egui::vec2(3.0, 3.0));
+    window.hover_at(view.rect.left_top() + egui::vec2(3.0, 3.0));
     window.run_steps(60);
     assert!(window.query_by_label(&name).is_none(), "the card is still shown");
 }
@@ -304,14 +258,7 @@ fn any_two_quantities_stand_against_each_other() {
 fn keys_move_the_platform_and_turn_the_view() {
     let mut window = opened_window();
     let before = window.state().session().pose().expect("a pose");
-    let design = window
-        .state()
-        .session()
-        .document()
-        .selected
-        .as_ref()
-        .expect("a design")
-        .design;
+    let design = selected(&window).design;
     let step = 0.01 * design.base_radius();
     window.key_press_modifiers(Modifiers::ALT, Key::ArrowRight);
     window.key_press_modifiers(Modifiers::ALT, Key::ArrowUp);
@@ -322,13 +269,11 @@ fn keys_move_the_platform_and_turn_the_view() {
     assert!((moved.position - before.position - glam::DVec2::splat(step)).length() < 1e-9);
     assert!((moved.phi - before.phi - 1f64.to_radians()).abs() < 1e-9);
     // The arrow keys alone walk along the front: the design is still the same.
-    assert_eq!(session.document().selected.as_ref().expect("a design").design, design);
+    assert_eq!(selected(&window).design, design);
     let (viewpoint, changes) = session.view().viewpoint;
-    window.key_press(Key::Num2);
-    window.run_steps(2);
+    press(&mut window, Key::Num2);
     let (top, more) = window.state().session().view().viewpoint;
     assert!(top != viewpoint && more == changes + 1);
-    window.key_press(Key::F1);
-    window.run_steps(2);
+    press(&mut window, Key::F1);
     assert!(window.query_by_label_contains("What you see").is_some());
 }

@@ -6,21 +6,21 @@ use std::sync::mpsc::sync_channel;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use kinefront_explorer::{DesignOrigin, Explorer, FrontEntry, InitialContent, Phase, open};
+use kinefront_explorer::{DesignOrigin, Explorer, FrontEntry, InitialContent, Phase, Purpose, open};
+use kinefront_export::Format;
 use kinefront_model::evaluation::Quantity;
 use kinefront_recording::{Recorder, RunFiles, read_run};
 use kinefront_study::{Column, RunControl, RunWriter, StudySearch, spawn_search};
 use kinefront_testkit::{python, run_folder};
 
-use super::support::{copied_text, idle_window, opened_window, small_study, until, window};
+use super::support::{
+    Window, act, assert_error, change_study, click, content, copied_text, idle_window, opened_window, press,
+    press_with, selected, selected_id, small_study, until, window,
+};
 
 /// Returns a window with a finished run.
-fn finished() -> super::support::Window {
-    let mut window = window(InitialContent::Study {
-        study: Box::new(small_study()),
-        path: None,
-        start: true,
-    });
+fn finished() -> Window {
+    let mut window = window(content(small_study(), true));
     until(&mut window, "the run ends", |explorer| {
         matches!(explorer.session().phase(), Phase::Finished(_))
             && explorer.session().known().is_some_and(|k| k.verified)
@@ -29,14 +29,13 @@ fn finished() -> super::support::Window {
 }
 
 /// Types a path into the field for paths.
-fn give_path(window: &mut super::support::Window, path: &std::path::Path) {
+fn give_path(window: &mut Window, path: &Path) {
     // The field has the focus without a click.
     window.run_steps(3);
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);
     window.get_by_label("Path").type_text(&path.display().to_string());
     window.run_steps(2);
-    window.get_by_label("OK").click();
-    window.run_steps(2);
+    click(window, "OK");
     until(window, "the file is written", |explorer| !explorer.is_busy());
 }
 
@@ -44,21 +43,17 @@ fn give_path(window: &mut super::support::Window, path: &std::path::Path) {
 #[test]
 fn a_dialog_has_the_keyboard() {
     let mut window = finished();
-    window.key_press_modifiers(Modifiers::COMMAND, Key::S);
-    window.run_steps(3);
+    press_with(&mut window, Modifiers::COMMAND, Key::S);
     let before = window.state().session().document().selected.clone();
     // Neither in its field nor beside it.
     for key in [Key::ArrowRight, Key::Tab, Key::ArrowRight, Key::K] {
-        window.key_press(key);
-        window.run_steps(2);
+        press(&mut window, key);
     }
     assert_eq!(window.state().session().document().selected, before);
     assert!(window.query_by_label("Path").is_some());
-    window.key_press(Key::Escape);
-    window.run_steps(2);
+    press(&mut window, Key::Escape);
     assert!(window.query_by_label("Path").is_none());
-    window.key_press(Key::ArrowRight);
-    window.run_steps(2);
+    press(&mut window, Key::ArrowRight);
     assert_ne!(window.state().session().document().selected, before);
 }
 
@@ -115,11 +110,7 @@ fn a_run_folder_is_saved_and_opened_to_the_same() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut window = finished();
     let path = folder.path().join("run");
-    let ctx = window.ctx.clone();
-    window
-        .state_mut()
-        .act(&ctx, kinefront_explorer::Purpose::SaveRun, path.clone());
-    until(&mut window, "the folder is written", |explorer| !explorer.is_busy());
+    act(&mut window, Purpose::SaveRun, &path);
     for file in ["study.toml", "designs.csv", "front.csv", "run.json", "recording.rrd"] {
         assert!(
             path.join(file).exists(),
@@ -146,15 +137,8 @@ fn a_run_folder_is_saved_and_opened_to_the_same() {
         assert_eq!(opened.store.row(id), session.store().row(id));
     }
     // A folder that contains a run is not overwritten.
-    window.state_mut().act(&ctx, kinefront_explorer::Purpose::SaveRun, path);
-    until(&mut window, "the request is refused", |explorer| !explorer.is_busy());
-    let notices = window.state().session().notices();
-    assert!(
-        notices
-            .iter()
-            .any(|notice| notice.is_error && notice.text.contains("already exists")),
-        "{notices:?}"
-    );
+    act(&mut window, Purpose::SaveRun, &path);
+    assert_error(&window, "already exists");
 }
 
 #[test]
@@ -162,23 +146,8 @@ fn the_front_is_exported_with_stars_and_notes() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("front.csv");
     let mut window = opened_window();
-    window.key_press(Key::S);
-    window.run_steps(2);
-    let selected = match window
-        .state()
-        .session()
-        .document()
-        .selected
-        .as_ref()
-        .map(|selected| selected.origin.clone())
-    {
-        Some(DesignOrigin::Evaluated(id)) => id,
-        other => panic!("{other:?}"),
-    };
-    let ctx = window.ctx.clone();
-    window
-        .state_mut()
-        .act(&ctx, kinefront_explorer::Purpose::ExportFront, path.clone());
+    press(&mut window, Key::S);
+    act(&mut window, Purpose::ExportFront, &path);
     let mut reader = csv::Reader::from_path(&path).expect("a table");
     let header = reader.headers().expect("a header").clone();
     assert_eq!(
@@ -192,19 +161,15 @@ fn the_front_is_exported_with_stars_and_notes() {
     assert_eq!(rows.len(), window.state().session().front().len());
     let stars: Vec<&csv::StringRecord> = rows.iter().filter(|row| &row[starred] == "true").collect();
     assert_eq!(stars.len(), 1);
-    assert_eq!(stars[0][0], selected.to_string());
+    assert_eq!(stars[0][0], selected_id(&window).to_string());
 }
 
 /// The selected design is exported in every format, and the front as Parquet: the files are complete and begin
 /// correctly.
 #[test]
 fn the_design_is_exported_for_other_programs() {
-    use kinefront_explorer::Purpose;
-    use kinefront_export::Format;
-
     let folder = tempfile::tempdir().expect("a folder");
     let mut window = opened_window();
-    let ctx = window.ctx.clone();
     let begins = |format: Format| match format.key() {
         "gltf" => "glTF",
         "mjcf" | "sdf" | "urdf" => "<?xml",
@@ -218,13 +183,9 @@ fn the_design_is_exported_for_other_programs() {
     };
     for &format in Format::ALL {
         let path = folder.path().join(format!("{}.{}", format.key(), format.extension()));
-        window
-            .state_mut()
-            .act(&ctx, Purpose::ExportDesign(format), path.clone());
-        until(&mut window, "the design is exported", |explorer| !explorer.is_busy());
+        act(&mut window, Purpose::ExportDesign(format), &path);
         if format.key() == "csv-trajectory" {
-            let notices = window.state().session().notices();
-            assert!(notices.iter().any(|notice| notice.text.contains("defines no motion")));
+            assert_error(&window, "defines no motion");
             assert!(!path.exists());
             continue;
         }
@@ -232,12 +193,11 @@ fn the_design_is_exported_for_other_programs() {
         assert!(bytes.starts_with(begins(format).as_bytes()), "{format:?}");
     }
     let report = folder.path().join("report");
-    window.state_mut().act(&ctx, Purpose::Report, report.clone());
-    until(&mut window, "the report is written", |explorer| !explorer.is_busy());
+    act(&mut window, Purpose::Report, &report);
     let page = std::fs::read_to_string(report.join("index.html")).expect("a page");
     assert!(page.contains("Comparison of the architectures"));
     let front = folder.path().join("front.parquet");
-    window.state_mut().act(&ctx, Purpose::ExportFront, front.clone());
+    act(&mut window, Purpose::ExportFront, &front);
     let bytes = std::fs::read(&front).expect("a table");
     assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
 }
@@ -245,32 +205,19 @@ fn the_design_is_exported_for_other_programs() {
 #[test]
 fn a_design_is_copied_and_pasted_as_text() {
     let mut window = opened_window();
-    let design = window
-        .state()
-        .session()
-        .document()
-        .selected
-        .as_ref()
-        .expect("a design")
-        .design;
+    let design = selected(&window).design;
     window.event(egui::Event::Copy);
     window.step();
     assert_eq!(copied_text(&window), Some(design.to_string()));
     window.event(egui::Event::Paste("3-RPR R=2 r=0.5 Lb=2 rj=0.03 rp=0.04".to_owned()));
     window.run_steps(2);
-    let selected = window.state().session().document().selected.clone().expect("a design");
-    assert_eq!(selected.origin, DesignOrigin::Modified { from: None });
-    assert_eq!(selected.design.architecture().name(), "3-RPR");
+    let pasted = selected(&window);
+    assert_eq!(pasted.origin, DesignOrigin::Modified { from: None });
+    assert_eq!(pasted.design.architecture().name(), "3-RPR");
     window.event(egui::Event::Paste("3-RPR R=two".to_owned()));
     window.run_steps(2);
-    let notices = window.state().session().notices();
-    assert!(
-        notices
-            .iter()
-            .any(|notice| notice.is_error && notice.text.contains("`two` is not a number")),
-        "{notices:?}"
-    );
-    assert_eq!(window.state().session().document().selected, Some(selected));
+    assert_error(&window, "`two` is not a number");
+    assert_eq!(selected(&window), pasted);
 }
 
 #[derive(Debug)]
@@ -290,7 +237,7 @@ impl egui::DroppedFile for Dropped {
 fn files_are_dropped_and_wrong_ones_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut window = idle_window();
-    let drop_file = |window: &mut super::support::Window, path: PathBuf| {
+    let drop_file = |window: &mut Window, path: PathBuf| {
         window.input_mut().dropped_files.push(Arc::new(Dropped(path)));
         window.run_steps(3);
     };
@@ -309,13 +256,7 @@ fn files_are_dropped_and_wrong_ones_told() {
         (folder.path().join("none"), "is not a run"),
     ] {
         drop_file(&mut window, path);
-        let notices = window.state().session().notices();
-        assert!(
-            notices
-                .iter()
-                .any(|notice| notice.is_error && notice.text.contains(words)),
-            "{words}: {notices:?}"
-        );
+        assert_error(&window, words);
     }
     // The run that was open before is unchanged.
     assert_eq!(window.state().session().store().len(), designs);
@@ -339,10 +280,7 @@ fn layout_axes_and_recent_files_are_remembered() {
     }
     let mut memory = Memory::default();
     let mut window = idle_window();
-    let ctx = window.ctx.clone();
-    window
-        .state_mut()
-        .act(&ctx, kinefront_explorer::Purpose::OpenFolder, run_folder());
+    act(&mut window, Purpose::OpenFolder, &run_folder());
     let axes = kinefront_explorer::axes(
         Column::Quantity(Quantity::WorkspaceRadius),
         Column::Quantity(Quantity::Mass),
@@ -354,12 +292,7 @@ fn layout_axes_and_recent_files_are_remembered() {
     let memory: &'static Memory = Box::leak(Box::new(memory));
     let again = egui_kittest::Harness::builder().build_eframe(move |cc| {
         cc.storage = Some(memory);
-        let subject = InitialContent::Study {
-            study: Box::new(small_study()),
-            path: None,
-            start: false,
-        };
-        Explorer::new(cc, subject, None, false).expect("a window")
+        Explorer::new(cc, content(small_study(), false), None, false).expect("a window")
     });
     assert_eq!(again.state().scatter_axes(), axes);
     assert_eq!(again.state().recent(), [run_folder()]);
@@ -393,19 +326,14 @@ fn an_opened_run_continues_in_its_folder() {
     perform(100, &run);
     let mut window = window(InitialContent::Run(run.clone()));
     window.run_steps(3);
-    window.get_by_label("▶ Continue").click();
-    window.run_steps(3);
+    click(&mut window, "▶ Continue");
     let notices = window.state().session().notices();
     assert!(
         notices.iter().any(|notice| notice.text.contains("the run is complete")),
         "{notices:?}"
     );
 
-    window
-        .state_mut()
-        .session_mut()
-        .editor_mut()
-        .change(|study| study.optimizer.evaluations = 240);
+    change_study(&mut window, |study| study.optimizer.evaluations = 240);
     window.run_steps(2);
     window.get_by_label("▶ Continue").click();
     until(&mut window, "the run ends", |explorer| {

@@ -6,15 +6,13 @@ use kinefront_model::spatial::Pose;
 use kinefront_scene::PathColor;
 use kinefront_study::TaskShapeChoice;
 
-use super::support::{Window, click_at, opened_window, set_slider, until};
+use super::support::{Window, change_study, click, click_at, edited, opened_window, set_slider, show, told, until};
 
 /// Opens a window with the panel and a path that is chosen in it.
 fn window_with(path: &str) -> Window {
     let mut window = opened_window();
-    window.state_mut().show(Panel::Motion);
-    window.run_steps(3);
-    window.get_by_label(path).click();
-    window.run_steps(2);
+    show(&mut window, Panel::Motion);
+    click(&mut window, path);
     until_followed(&mut window);
     window
 }
@@ -32,14 +30,13 @@ fn pose(window: &Window) -> Pose {
 }
 
 fn waypoints(window: &Window) -> Vec<[f64; 3]> {
-    let task = &window.state().session().editor().study().task;
-    task.waypoints.clone().expect("waypoints")
+    edited(window).task.waypoints.clone().expect("waypoints")
 }
 
 #[test]
 fn a_time_of_the_cursor_is_a_pose_of_the_path() {
     let mut window = window_with("Pick and place");
-    let task = window.state().session().editor().study().task.clone();
+    let task = edited(&window).task.clone();
     assert_eq!(
         (task.shape, task.cycle_time_s),
         (Some(TaskShapeChoice::PickAndPlace), Some(2.0))
@@ -62,8 +59,7 @@ fn a_time_of_the_cursor_is_a_pose_of_the_path() {
     window.get_by_label("Play").click();
     window.run_steps(12);
     assert!(pose(&window).position.distance(before.position) > 1e-6 * radius);
-    window.get_by_label("Pause").click();
-    window.run_steps(3);
+    click(&mut window, "Pause");
     let rest = pose(&window);
     window.run_steps(6);
     assert_eq!(pose(&window), rest);
@@ -81,16 +77,14 @@ fn waypoints_are_added_by_the_pose_and_by_clicks() {
     };
     window.state_mut().session_mut().view_mut().pose = Some(moved);
     window.run_steps(2);
-    window.get_by_label("Add the pose").click();
-    window.run_steps(3);
+    click(&mut window, "Add the pose");
     let with_pose = waypoints(&window);
     let [x, y, phi_deg] = with_pose[2];
     assert!((x - moved.position.x).abs() < 1e-6 && (y - moved.position.y).abs() < 1e-6);
     assert!((phi_deg - moved.phi.to_degrees()).abs() < 1e-6);
 
     window.state_mut().show(Panel::Pose);
-    window.get_by_label("Draw").click();
-    window.run_steps(3);
+    click(&mut window, "Draw");
     // The middle of the plan view is the centre of the base.
     let view = window.get_by_label("Top view").rect();
     click_at(&mut window, view.center() + egui::vec2(6.0, 0.0));
@@ -107,7 +101,7 @@ fn waypoints_are_added_by_the_pose_and_by_clicks() {
 #[test]
 fn a_path_that_is_too_large_tells_where_it_ends() {
     let mut window = window_with("Circle");
-    assert!(window.query_all_by_label_contains("cycle 2.000 s").next().is_some());
+    assert!(told(&window, "cycle 2.000 s").is_some());
     for field in window.state().session().fields() {
         window.state_mut().session_mut().view_mut().layers.path = Some(PathColor::Field(field));
         window.run_steps(2);
@@ -116,34 +110,22 @@ fn a_path_that_is_too_large_tells_where_it_ends() {
         let [low, high] = followed.path.as_ref().expect("a path with colours").range;
         assert!(low <= high, "{field:?}: {low} to {high}");
     }
-    window
-        .state_mut()
-        .session_mut()
-        .editor_mut()
-        .change(|study| study.task.share = 40.0);
+    change_study(&mut window, |study| study.task.share = 40.0);
     until_followed(&mut window);
-    assert!(
-        window
-            .query_all_by_label_contains("the motion ends in piece 1")
-            .next()
-            .is_some()
-    );
-    window.get_by_label("No motion").click();
-    window.run_steps(3);
-    assert_eq!(window.state().session().editor().study().task.shape, None);
+    assert!(told(&window, "the motion ends in piece 1").is_some());
+    click(&mut window, "No motion");
+    assert_eq!(edited(&window).task.shape, None);
     assert!(window.query_by_label("Pick and place").is_some());
 }
 
 #[test]
 fn limits_take_the_place_of_the_time_of_a_cycle() {
     let mut window = window_with("Star");
-    window.get_by_label("set v max [m/s]").click();
-    window.run_steps(3);
-    let task = window.state().session().editor().study().task.clone();
+    click(&mut window, "set v max [m/s]");
+    let task = edited(&window).task.clone();
     assert_eq!((task.cycle_time_s, task.v_max_m_per_s), (None, Some(1.0)));
-    window.get_by_label("set v max [m/s]").click();
-    window.run_steps(3);
-    let task = window.state().session().editor().study().task.clone();
+    click(&mut window, "set v max [m/s]");
+    let task = edited(&window).task.clone();
     assert_eq!((task.cycle_time_s, task.v_max_m_per_s), (Some(2.0), None));
     assert!(window.state().session().editor().text_fault().is_none());
 }

@@ -2,11 +2,14 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use kinefront_explorer::{InitialContent, Panel};
+use kinefront_explorer::Panel;
 use kinefront_model::evaluation::{PoseScalar, Quantity};
 use kinefront_study::{Column, ObjectiveChoice, Study};
 
-use super::support::{Window, click_at, idle_window, small_study, type_into, type_keys, until, window};
+use super::support::{
+    Window, click, click_at, content, edited, idle_window, press, selected, show, small_study, told, type_into,
+    type_keys, until, window,
+};
 
 /// Opens a window and runs the small study with other objectives.
 fn run(objectives: &[(&str, &str)]) -> Window {
@@ -21,11 +24,7 @@ fn run(objectives: &[(&str, &str)]) -> Window {
     };
     study.optimizer.evaluations = 120;
     study.workspace.certify = false;
-    let mut window = window(InitialContent::Study {
-        study: Box::new(study),
-        path: None,
-        start: true,
-    });
+    let mut window = window(content(study, true));
     until(&mut window, "the front is verified", |explorer| {
         let session = explorer.session();
         !session.is_running() && !session.front().is_empty() && session.front().iter().all(|entry| entry.verified)
@@ -47,8 +46,7 @@ fn three_objectives_have_axes_colour_buttons_and_a_space_that_is_clicked() {
     let told = coloring.accesskit_node().value().unwrap_or_default();
     assert!(told.contains("footprint"), "{told}");
 
-    window.state_mut().show(Panel::Choose);
-    window.run_steps(3);
+    show(&mut window, Panel::Choose);
     for (button, quantity, largest) in [
         ("Lightest", Column::Quantity(Quantity::Mass), false),
         ("Largest k_xy", k_xy, true),
@@ -58,10 +56,8 @@ fn three_objectives_have_axes_colour_buttons_and_a_space_that_is_clicked() {
             false,
         ),
     ] {
-        window.get_by_label(button).click();
-        window.run_steps(3);
-        let session = window.state().session();
-        let selected = session.document().selected.clone().expect("a selection").design;
+        click(&mut window, button);
+        let (session, selected) = (window.state().session(), selected(&window).design);
         let value = |entry: &kinefront_explorer::FrontEntry| entry.row.number(quantity).expect("a value");
         let best = session.front().iter().map(value).fold(
             if largest { f64::NEG_INFINITY } else { f64::INFINITY },
@@ -78,57 +74,48 @@ fn three_objectives_have_axes_colour_buttons_and_a_space_that_is_clicked() {
         );
     }
 
-    window.state_mut().show(Panel::Space);
-    window.run_steps(3);
+    show(&mut window, Panel::Space);
     let space = window
         .get_by_role_and_label(Role::Image, "Designs in three quantities")
         .rect();
-    let before = window.state().session().document().selected.clone();
+    let before = selected(&window);
     // Somewhere in the panel a click meets another design of the front.
-    let mut selected = before.clone();
     'places: for row in 5..25 {
         for column in 2..28 {
             let at = space.min + space.size() * egui::vec2(column as f32 / 30.0, row as f32 / 30.0);
             click_at(&mut window, at);
-            selected = window.state().session().document().selected.clone();
-            if selected != before {
+            if selected(&window) != before {
                 break 'places;
             }
         }
     }
-    assert_ne!(selected, before, "no click selected a design");
+    assert_ne!(selected(&window), before, "no click selected a design");
 }
 
 #[test]
 fn one_objective_has_a_single_best_design() {
     let mut window = run(&[("minimize", "platform_mass_kg")]);
     assert_eq!(window.state().session().front().len(), 1);
-    window.state_mut().show(Panel::Choose);
-    window.run_steps(3);
-    window.get_by_label("Smallest mass of the platform").click();
-    window.run_steps(3);
+    show(&mut window, Panel::Choose);
+    click(&mut window, "Smallest mass of the platform");
     assert!(window.state().session().document().selected.is_some());
 }
 
 #[test]
 fn the_question_is_edited_where_the_study_is() {
     let mut window = idle_window();
-    window.state_mut().show(Panel::Study);
-    window.run_steps(3);
-    window.get_by_label("Add an objective").click();
-    window.run_steps(3);
+    show(&mut window, Panel::Study);
+    click(&mut window, "Add an objective");
     let keys = |window: &Window| -> Vec<String> {
-        let study = window.state().session().editor().study();
-        study.objectives.iter().map(|choice| choice.key().to_owned()).collect()
+        let choices = edited(window).objectives.iter();
+        choices.map(|choice| choice.key().to_owned()).collect()
     };
     assert_eq!(keys(&window), ["mass_kg", "workspace_radius_m", "footprint_m"]);
     let text = window.state().session().editor().text().to_owned();
     assert!(text.contains("footprint_m"), "{text}");
-    window.get_by_label("maximize").click();
-    window.run_steps(3);
-    let study = window.state().session().editor().study();
+    click(&mut window, "maximize");
     assert_eq!(
-        study.objectives[1],
+        edited(&window).objectives[1],
         ObjectiveChoice::Minimize("workspace_radius_m".to_owned())
     );
 }
@@ -137,51 +124,32 @@ fn the_question_is_edited_where_the_study_is() {
 #[test]
 fn numbers_are_typed_into_the_fields_of_the_study() {
     let mut window = idle_window();
-    window.state_mut().show(Panel::Study);
-    window.run_steps(3);
-    let dexterity = |window: &Window| {
-        window
-            .state()
-            .session()
-            .editor()
-            .study()
-            .requirements
-            .inverse_condition_min
-    };
+    show(&mut window, Panel::Study);
+    let dexterity = |window: &Window| edited(window).requirements.inverse_condition_min;
     let retype = |window: &mut Window, text: &str| type_into(window, "inverse condition min", text);
     // As it is typed, nothing is taken; "0." and "1" would both be refused.
     retype(&mut window, "0.25");
     assert_eq!(dexterity(&window), 0.1);
-    window.key_press(egui::Key::Enter);
-    window.run_steps(3);
+    press(&mut window, egui::Key::Enter);
     assert_eq!(dexterity(&window), 0.25);
     assert!(window.state().session().editor().faults().next().is_none());
     // Escape restores.
     retype(&mut window, "0.7");
-    window.key_press(egui::Key::Escape);
-    window.run_steps(3);
+    press(&mut window, egui::Key::Escape);
     assert_eq!(dexterity(&window), 0.25);
     // A number out of range is refused when it is complete, and the field shows what the study holds.
     retype(&mut window, "7");
-    window.key_press(egui::Key::Enter);
-    window.run_steps(3);
+    press(&mut window, egui::Key::Enter);
     assert_eq!(dexterity(&window), 0.25);
-    assert!(
-        window
-            .query_all_by_label_contains("inverse_condition_min")
-            .next()
-            .is_some()
-    );
+    assert!(told(&window, "inverse_condition_min").is_some());
 }
 
 /// The text view keeps its cursor while what is typed is invalid for a time.
 #[test]
 fn text_is_typed_into_the_study_as_fast_as_keys_come() {
     let mut window = idle_window();
-    window.state_mut().show(Panel::Study);
-    window.run_steps(3);
-    window.get_by_label("Text").click();
-    window.run_steps(3);
+    show(&mut window, Panel::Study);
+    click(&mut window, "Text");
     let at = window.get_by_label("Study text").rect().left_top() + egui::vec2(30.0, 8.0);
     click_at(&mut window, at);
     window.run_steps(2);

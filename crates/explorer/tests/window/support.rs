@@ -1,11 +1,14 @@
 //! Helpers: a window without a screen, and a run to show in it.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use egui::accesskit::{Action, ActionData, ActionRequest, Role};
+use egui::{Key, Modifiers, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use kinefront_explorer::{Explorer, InitialContent};
+use glam::DVec2;
+use kinefront_explorer::{Explorer, InitialContent, Panel, Purpose, Selected};
 use kinefront_study::Study;
 use kinefront_testkit::{DESIGN, run_folder};
 
@@ -35,26 +38,104 @@ pub fn window(subject: InitialContent) -> Window {
         .build_eframe(move |cc| Explorer::new(cc, subject, None, false).expect("a window"))
 }
 
-pub fn idle_window() -> Window {
-    window(InitialContent::Study {
-        study: Box::new(small_study()),
+/// What a window opens with: a study, which is run at once if `start` is true.
+pub fn content(study: Study, start: bool) -> InitialContent {
+    InitialContent::Study {
+        study: Box::new(study),
         path: None,
-        start: false,
-    })
+        start,
+    }
+}
+
+pub fn idle_window() -> Window {
+    window(content(small_study(), false))
 }
 
 pub fn opened_window() -> Window {
     let mut window = window(InitialContent::Run(run_folder()));
-    until(&mut window, "the design is verified", |explorer| {
+    until_verified(&mut window);
+    window
+}
+
+/// The study that is edited in a window.
+pub fn edited(window: &Window) -> &Study {
+    window.state().session().editor().study()
+}
+
+pub fn change_study(window: &mut Window, change: impl FnOnce(&mut Study)) {
+    window.state_mut().session_mut().editor_mut().change(change);
+}
+
+pub fn selected(window: &Window) -> Selected {
+    let selected = &window.state().session().document().selected;
+    selected.clone().expect("a selected design")
+}
+
+/// The id of the selected design, which is one of the run.
+pub fn selected_id(window: &Window) -> usize {
+    let document = window.state().session().document();
+    document.selected_id().expect("a design of the run")
+}
+
+pub fn show(window: &mut Window, panel: Panel) {
+    window.state_mut().show(panel);
+    window.run_steps(3);
+}
+
+/// Clicks what has a name.
+pub fn click(window: &mut Window, name: &str) {
+    window.get_by_label(name).click();
+    window.run_steps(3);
+}
+
+pub fn press(window: &mut Window, key: Key) {
+    window.key_press(key);
+    window.run_steps(3);
+}
+
+pub fn press_with(window: &mut Window, modifiers: Modifiers, key: Key) {
+    window.key_press_modifiers(modifiers, key);
+    window.run_steps(3);
+}
+
+/// Opens or writes a file, and waits until that is done.
+pub fn act(window: &mut Window, purpose: Purpose, path: &Path) {
+    let ctx = window.ctx.clone();
+    window.state_mut().act(&ctx, purpose, path.to_owned());
+    until(window, "the work on the file ends", |explorer| !explorer.is_busy());
+}
+
+/// Returns what a label that contains some text says.
+pub fn told(window: &Window, text: &str) -> Option<String> {
+    let found = window.query_all_by_label_contains(text).next()?;
+    found.value().or_else(|| found.accesskit_node().label())
+}
+
+/// Fails unless an error is told that contains some words.
+pub fn assert_error(window: &Window, words: &str) {
+    let notices = window.state().session().notices();
+    let is_told = notices
+        .iter()
+        .any(|notice| notice.is_error && notice.text.contains(words));
+    assert!(is_told, "{words}: {notices:?}");
+}
+
+/// Draws frames until the selected design is verified.
+pub fn until_verified(window: &mut Window) {
+    until(window, "the design is verified", |explorer| {
         explorer.session().known().is_some_and(|known| known.verified)
     });
-    window
 }
 
 /// Draws frames until `done` is true as a result of other threads; fails after two minutes.
 pub fn until(window: &mut Window, what: &str, done: impl Fn(&Explorer) -> bool) {
+    until_seen(window, what, |window| done(window.state()));
+}
+
+/// The same, for what the window shows.
+pub fn until_seen(window: &mut Window, what: &str, done: impl Fn(&Window) -> bool) {
     let since = Instant::now();
-    while !done(window.state()) {
+    while !done(window) {
         assert!(since.elapsed() < Duration::from_secs(120), "timed out: {what}");
         std::thread::sleep(Duration::from_millis(5));
         window.step();
@@ -98,13 +179,53 @@ pub fn click_at(window: &mut Window, at: egui::Pos2) {
     window.run_steps(2);
     window.drag_at(at);
     window.run_steps(1);
+    release_at(window, at);
+}
+
+/// Releases the button of the mouse at a position, where the pointer stays.
+fn release_at(window: &mut Window, pos: Pos2) {
     window.event(egui::Event::PointerButton {
-        pos: at,
+        pos,
         button: egui::PointerButton::Primary,
         pressed: false,
-        modifiers: egui::Modifiers::NONE,
+        modifiers: Modifiers::NONE,
     });
     window.run_steps(3);
+}
+
+/// Drags the mouse along a path.
+pub fn drag(window: &mut Window, path: &[Pos2]) {
+    window.hover_at(path[0]);
+    window.run_steps(2);
+    window.drag_at(path[0]);
+    window.run_steps(2);
+    for &at in &path[1..] {
+        window.hover_at(at);
+        window.run_steps(2);
+    }
+    release_at(window, path[path.len() - 1]);
+}
+
+/// The plan view of the selected design.
+pub struct TopView {
+    pub rect: Rect,
+    /// Screen points per metre.
+    pub scale: f64,
+}
+
+impl TopView {
+    pub fn of(window: &Window) -> Self {
+        let design = selected(window).design;
+        let half = 0.5 * (design.platform_radius() + design.link_length());
+        let reach = 1.25 * design.base_radius().max(half);
+        let rect = window.get_by_label("Top view").rect();
+        let scale = 0.5 * f64::from(rect.width().min(rect.height())) / reach;
+        Self { rect, scale }
+    }
+
+    pub fn screen(&self, at: DVec2) -> Pos2 {
+        self.rect.center() + egui::vec2((at.x * self.scale) as f32, -(at.y * self.scale) as f32)
+    }
 }
 
 /// The text that the last frame put on the clipboard.
@@ -128,7 +249,7 @@ pub fn type_keys(window: &mut Window, text: &str) {
 pub fn type_into(window: &mut Window, name: &str, text: &str) {
     window.get_by_role_and_label(Role::SpinButton, name).focus();
     window.run_steps(2);
-    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
     window.step();
     type_keys(window, text);
 }
