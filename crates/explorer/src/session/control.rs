@@ -10,8 +10,7 @@ use super::{GLANCE, Phase, Session, references};
 use crate::AnyError;
 use crate::data::{DesignOrigin, Document, Selected};
 use crate::files::{Opened, open, run_folder_of};
-use crate::threads::Request;
-use crate::threads::Running;
+use crate::threads::{Request, Running};
 use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Design;
 use kinefront_optimize::{Objectives, knee};
@@ -53,18 +52,23 @@ impl Session {
         &mut self,
         source: impl FnOnce(Study, Arc<RunControl>, Vec<Subscriber>) -> std::io::Result<JoinHandle<()>>,
     ) {
-        let study = match PreparedStudy::new(self.editor.study().clone()) {
-            Ok(study) => study,
-            Err(error) => return self.notify_error(error),
-        };
+        let study = self.editor.study().clone();
         let wake = Arc::clone(&self.wake);
-        match Running::start(study.study().clone(), source, move || wake()) {
-            Ok(running) => {
+        self.search(study, |study| Running::start(study, source, move || wake()));
+    }
+
+    /// Shows the run of a study, which `start` starts.
+    fn search(&mut self, study: Study, start: impl FnOnce(Study) -> Result<Running, AnyError>) {
+        let started = PreparedStudy::new(study)
+            .map_err(AnyError::from)
+            .and_then(|study| Ok((start(study.study().clone())?, study)));
+        match started {
+            Ok((running, study)) => {
                 self.begin(study);
                 self.run = Some(running);
                 self.phase = Phase::Searching;
             }
-            Err(words) => self.notify_error(words),
+            Err(error) => self.notify_error(error),
         }
     }
 
@@ -98,17 +102,7 @@ impl Session {
         }
         let study = Study::clone(resumption.search().study());
         let wake = Arc::clone(&self.wake);
-        let running = PreparedStudy::new(study)
-            .map_err(AnyError::from)
-            .and_then(|study| Ok((study, Running::resume(resumption, move || wake())?)));
-        match running {
-            Ok((study, running)) => {
-                self.begin(study);
-                self.run = Some(running);
-                self.phase = Phase::Searching;
-            }
-            Err(error) => self.notify_error(error),
-        }
+        self.search(study, |_| Running::resume(resumption, move || wake()));
     }
 
     /// Opens the results of a run, or a study.
@@ -125,14 +119,13 @@ impl Session {
             return;
         }
         match open(path) {
-            Ok(opened) => {
-                let Opened {
-                    study,
-                    store,
-                    front,
-                    history,
-                    ..
-                } = opened;
+            Ok(Opened {
+                study,
+                store,
+                front,
+                history,
+                ..
+            }) => {
                 match PreparedStudy::new(study.clone()) {
                     Ok(prepared) => self.begin(prepared),
                     Err(error) => return self.notify_error(error),

@@ -91,17 +91,11 @@ impl Session {
 
     /// Returns the bars of the selected design as they bend in the vibration that is shown; none if none is shown.
     pub(super) fn bent(&mut self) -> Arc<Vec<BentBar>> {
-        let Some(shown) = self.view.vibration else {
-            return Arc::default();
-        };
-        let Some(known) = self.pose_dynamics() else {
-            return Arc::default();
-        };
-        let amplitude = shown.share * known.asked.design.base_radius();
-        let bent = known
-            .vibrations
-            .as_ref()
-            .map(|vibrations| vibrations.bent(shown.mode, amplitude));
+        let bent = self.view.vibration.and_then(|shown| {
+            let known = self.pose_dynamics()?;
+            let amplitude = shown.share * known.asked.design.base_radius();
+            Some(known.vibrations.as_ref()?.bent(shown.mode, amplitude))
+        });
         Arc::new(bent.unwrap_or_default())
     }
 }
