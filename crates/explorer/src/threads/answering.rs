@@ -1,11 +1,11 @@
 //! A thread that answers the latest of its questions.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::Builder;
 use std::time::Duration;
 
-use super::Wake;
 use super::mailbox::Mailbox;
+use super::{Wake, lock};
 
 /// What a thread is asked, with its answer.
 pub trait Question: Clone + PartialEq + Send + 'static {
@@ -76,7 +76,7 @@ impl<Q: Question> AnsweringThread<Q> {
 
     /// Returns the answer that was found last, if `accepts` accepts its question.
     pub fn last(&self, accepts: impl FnOnce(&Q) -> bool) -> Option<Arc<Q::Answer>> {
-        let answered = self.shared.answered.lock().unwrap_or_else(PoisonError::into_inner);
+        let answered = lock(&self.shared.answered);
         let (question, answer) = answered.as_ref()?;
         accepts(question).then(|| Arc::clone(answer))
     }
@@ -109,7 +109,7 @@ fn answer_questions<Q: Question>(shared: &Shared<Q>) {
             question = newer;
         }
         let answer = Arc::new(question.answer());
-        *shared.answered.lock().unwrap_or_else(PoisonError::into_inner) = Some((question, answer));
+        *lock(&shared.answered) = Some((question, answer));
         (shared.wake)();
     }
 }

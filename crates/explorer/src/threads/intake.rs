@@ -1,9 +1,10 @@
 //! Collects messages of the run's thread between two frames of the window, so that neither waits for the other.
 
 use std::sync::mpsc::Receiver;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
+use super::lock;
 use crate::{FrontEntry, Store};
 use kinefront_study::{ConclusionPart, Event, GenerationSummary, RunSummary};
 
@@ -45,11 +46,11 @@ impl Intake {
 
     /// Takes all messages since the last call.
     pub fn take(&self) -> RunMessages {
-        std::mem::take(&mut *self.messages.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut *lock(&self.messages))
     }
 
     fn put(&self, put: impl FnOnce(&mut RunMessages)) {
-        put(&mut self.messages.lock().unwrap_or_else(PoisonError::into_inner));
+        put(&mut lock(&self.messages));
         (self.wake)();
     }
 

@@ -3,6 +3,8 @@
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
+use super::lock;
+
 /// Holds at most one item; a later item replaces an earlier one.
 pub(super) struct Mailbox<T> {
     state: Mutex<(Option<T>, bool)>,
@@ -18,24 +20,24 @@ impl<T> Mailbox<T> {
     }
 
     pub fn put(&self, thing: T) {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner).0 = Some(thing);
+        lock(&self.state).0 = Some(thing);
         self.changed.notify_all();
     }
 
     pub fn close(&self) {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner).1 = true;
+        lock(&self.state).1 = true;
         self.changed.notify_all();
     }
 
     /// Whether it is open and holds no item.
     pub fn is_idle(&self) -> bool {
-        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let state = lock(&self.state);
         state.0.is_none() && !state.1
     }
 
     /// Waits for an item for at most `time`.
     pub fn wait(&self, time: Duration) -> Option<T> {
-        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let state = lock(&self.state);
         let empty = |state: &mut (Option<T>, bool)| state.0.is_none() && !state.1;
         let (mut state, _) = self
             .changed
@@ -46,7 +48,7 @@ impl<T> Mailbox<T> {
 
     /// Waits for an item; returns `None` once the mailbox is closed.
     pub fn take(&self) -> Option<T> {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut state = lock(&self.state);
         loop {
             if state.1 {
                 return None;

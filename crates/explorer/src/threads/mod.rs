@@ -1,7 +1,7 @@
 //! The threads beside the window: the run with its listeners, the threads that evaluate and draw the selected design, and those that
 //! answer questions about designs.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 mod answering;
 mod intake;
@@ -21,3 +21,8 @@ pub use scene::{Answer, Known, MotionShown, Request, SceneThread};
 
 /// Wakes the window when there is something new to show.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// Locks what threads share. It is as good as before where one of them has ended in a panic.
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use super::Intake;
+use super::{Intake, lock};
 use kinefront_recording::{Recorder, RunFileError, RunFiles};
 use kinefront_study::{Resumption, RunControl, RunWriter, Study, Subscriber, spawn_search};
 
@@ -37,7 +37,7 @@ pub struct Writing(Arc<(Mutex<usize>, Condvar)>);
 
 impl Writing {
     fn count(&self) -> MutexGuard<'_, usize> {
-        self.0.0.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.0.0)
     }
 
     /// Counts one more file until the returned guard is dropped.

@@ -10,14 +10,14 @@
 //! Only the latest request is processed: while a slider is dragged, intermediate requests are skipped.
 
 use crate::AnyError;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::Builder;
 use std::time::Duration;
 
-use super::Wake;
 use super::mailbox::Mailbox;
 use super::questions::MotionAnswer;
-use kinefront_model::evaluation::{Evaluation, GridChoice};
+use super::{Wake, lock};
+use kinefront_model::evaluation::{Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_recording::{
@@ -138,7 +138,7 @@ struct Shared {
 impl Shared {
     /// Returns the verified evaluation of `design`, if it is the design verified last.
     fn verified(&self, study: &Arc<PreparedStudy>, design: &Design) -> Option<Known> {
-        let verified = self.verified.lock().unwrap_or_else(PoisonError::into_inner);
+        let verified = lock(&self.verified);
         let (_, evaluation) = verified
             .as_ref()
             .filter(|(of, evaluation)| of == study && evaluation.design == *design)?;
@@ -146,7 +146,7 @@ impl Shared {
     }
 
     fn answer(&self, change: impl FnOnce(&mut Answer)) {
-        change(&mut self.answer.lock().unwrap_or_else(PoisonError::into_inner));
+        change(&mut lock(&self.answer));
         (self.wake)();
     }
 }
@@ -198,11 +198,7 @@ impl SceneThread {
 
     /// Returns the results so far.
     pub fn answer(&self) -> Answer {
-        self.shared
-            .answer
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone()
+        lock(&self.shared.answer).clone()
     }
 }
 
@@ -226,8 +222,7 @@ fn verify_requests(shared: &Shared) {
         } else {
             Arc::new(study.model().evaluate_by(&PoolWorkers, &design, GridChoice::Fine))
         };
-        *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) =
-            Some((Arc::clone(&study), Arc::clone(&evaluation)));
+        *lock(&shared.verified) = Some((Arc::clone(&study), Arc::clone(&evaluation)));
         shared.answer(|answer| {
             if let Some(known) = &mut answer.known
                 && known.evaluation.design == design
@@ -261,6 +256,20 @@ struct SceneState {
     pins: Vec<Evaluation>,
     /// The design sent last to the verify thread.
     verifying: Option<Design>,
+}
+
+impl SceneState {
+    /// Returns the evaluation of a pinned design on the fine grid, as the tables show it. A design that was pinned before, or verified as
+    /// the selected one, is not evaluated again.
+    fn pin(&self, model: &Model, design: &Design) -> Evaluation {
+        let pinned = self.pins.iter().find(|pin| pin.design == *design);
+        let verified = || {
+            let known = self.known.as_ref().filter(|known| known.verified)?;
+            Some(&*known.evaluation).filter(|evaluation| evaluation.design == *design)
+        };
+        let found = pinned.or_else(verified).cloned();
+        found.unwrap_or_else(|| model.evaluate_by(&PoolWorkers, design, GridChoice::Fine))
+    }
 }
 
 fn draw_requests(shared: &Shared, scene: Option<LiveScene>) {
@@ -310,7 +319,7 @@ fn step(state: &mut SceneState, shared: &Shared, request: &Request) -> Result<()
         state.known = None;
         state.verifying = None;
         state.pins.clear();
-        *shared.verified.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        *lock(&shared.verified) = None;
     }
     let before = before.filter(|_| !new_study);
     let model = request.study.model();
@@ -333,21 +342,7 @@ fn step(state: &mut SceneState, shared: &Shared, request: &Request) -> Result<()
     };
     let new_pins = before.as_ref().is_none_or(|before| before.pins != request.pins);
     if new_pins {
-        // A design that was verified as the selected one is not evaluated again; the others are, as the tables show them.
-        let fine = |design: &Design| model.evaluate_by(&PoolWorkers, design, GridChoice::Fine);
-        let before = std::mem::take(&mut state.pins);
-        let known = |design: &Design| before.iter().find(|pin| pin.design == *design).cloned();
-        let verified = |design: &Design| {
-            let known = state.known.as_ref().filter(|known| known.verified);
-            known
-                .filter(|known| known.evaluation.design == *design)
-                .map(|known| (*known.evaluation).clone())
-        };
-        let pins = request.pins.iter().map(|(_, design)| {
-            known(design)
-                .or_else(|| verified(design))
-                .unwrap_or_else(|| fine(design))
-        });
+        let pins = request.pins.iter().map(|(_, design)| state.pin(model, design));
         state.pins = pins.collect();
     }
 
