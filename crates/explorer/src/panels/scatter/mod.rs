@@ -3,17 +3,18 @@
 mod axis;
 mod cloud;
 mod coloring;
+mod controls;
 mod enclosing;
 mod marks;
+mod pointer;
 
 use kinefront_model::evaluation::Better;
-use kinefront_model::mechanism::{Architecture, DesignVariable};
-use kinefront_scene::text;
+use kinefront_model::mechanism::DesignVariable;
 use kinefront_study::Column;
 use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{Align2, Color32, ComboBox, Pos2, Rect, Response, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
+use egui::{Align2, Color32, Pos2, Rect, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 use egui_plot::{Plot, PlotBounds, PlotImage, PlotPoint, PlotTransform};
 
 use self::axis::{Extent, decades, tick};
@@ -23,7 +24,7 @@ pub use self::coloring::Coloring;
 use self::coloring::{ColorLegend, ColorRange, ColorScale};
 pub use self::enclosing::DragTool;
 use self::enclosing::Enclosing;
-use super::{button, named, range, say_empty};
+use super::say_empty;
 use crate::{MarkedCounts, Row, Session, theme};
 
 /// Time that a frame may spend on drawing the cloud.
@@ -111,8 +112,6 @@ impl Scatter {
     pub fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         self.follow_objectives(session);
         self.controls(ui, session);
-        chips(ui, session);
-        self.marked(ui, session);
         self.scale = match self.coloring {
             Coloring::Quantity(column) => Some(self.color_range.update(column, session.era(), session.store())),
             _ => None,
@@ -162,56 +161,6 @@ impl Scatter {
             say_empty(ui, &ui.painter_at(frame), frame.center(), words);
         }
         self.legend(ui, frame, dark);
-    }
-
-    /// Tells how many designs are marked, and what can be done with them.
-    fn marked(&mut self, ui: &mut Ui, session: &mut Session) {
-        let marked = Arc::clone(&session.document().marked);
-        if marked.is_empty() {
-            return;
-        }
-        let front = session.front_number();
-        let is_counted =
-            |counted: &(Arc<Vec<usize>>, u64, MarkedCounts)| Arc::ptr_eq(&counted.0, &marked) && counted.1 == front;
-        if !self.counted.as_ref().is_some_and(is_counted) {
-            self.counted = Some((Arc::clone(&marked), front, session.count_marked()));
-        }
-        let Some((_, _, counts)) = &self.counted else { return };
-        ui.horizontal_wrapped(|ui| {
-            ui.strong(format!("{} marked", counts.all));
-            let of = counts.of.iter().filter(|(_, count)| *count > 0);
-            let of: Vec<String> = of
-                .map(|(found, count)| format!("{} {count}", text::architecture(*found)))
-                .collect();
-            ui.label(format!(
-                "{} feasible, {} on the front; {}",
-                counts.feasible,
-                counts.on_front,
-                of.join(", ")
-            ));
-            let hint = "filters to the ranges of the marked designs on both axes";
-            if button(ui, "Filter", hint) {
-                self.filter_to_marked(session);
-            }
-            if button(ui, "Unmark", "clears all marks") {
-                session.mark(Arc::default());
-            }
-        });
-    }
-
-    /// Sets the filter to the ranges of the marked designs on both axes.
-    fn filter_to_marked(&self, session: &mut Session) {
-        let of_axis = |axis: &ScatterAxis| {
-            let ids = session.document().marked.iter();
-            let values = ids.filter_map(|&id| session.number(id, axis.quantity));
-            (axis.quantity, range(values))
-        };
-        let ranges = self.axes.each_ref().map(of_axis);
-        session.edit(|document| {
-            for (quantity, [low, high]) in ranges.into_iter().filter(|(_, [low, high])| low <= high) {
-                document.filter.set_range(quantity, Some([low, high]));
-            }
-        });
     }
 
     /// Shows the objectives of the study when they are other ones than before.
@@ -272,161 +221,6 @@ impl Scatter {
             plot = plot.y_grid_spacer(decades);
         }
         plot
-    }
-
-    /// Keeps the bounds where the user moves them; a double click fits them to the designs again.
-    fn follow_pointer(&mut self, ui: &Ui, response: &egui::Response) {
-        let scrolled = ui.input(|input| input.smooth_scroll_delta().y != 0.0) && response.hovered();
-        let is_moved = response.dragged() || response.drag_stopped();
-        if (is_moved && self.tool == DragTool::Pan) || scrolled {
-            self.fitted = false;
-        }
-        if response.double_clicked() {
-            self.fitted = true;
-        }
-    }
-
-    fn controls(&mut self, ui: &mut Ui, session: &mut Session) {
-        // A row that is wider than the panel would widen the plot as well.
-        let width = ui.available_width();
-        ui.horizontal_wrapped(|ui| {
-            self.axis_field(ui, session, 0, "x");
-            if width < 465.0 {
-                ui.end_row();
-            }
-            self.axis_field(ui, session, 1, "y");
-            if button(ui, "Fit", "fits the view to the feasible designs (or double-click)") {
-                self.fitted = true;
-            }
-        });
-        ui.horizontal_wrapped(|ui| {
-            self.coloring.ui(ui, session.study().named_quantities());
-            if width < 350.0 {
-                ui.end_row();
-            } else {
-                ui.separator();
-            }
-            self.tool.ui(ui);
-        });
-        ui.horizontal_wrapped(|ui| {
-            for architecture in session.study().architectures.clone() {
-                include(ui, session, architecture);
-            }
-        });
-    }
-
-    /// Shows the fields of an axis.
-    fn axis_field(&mut self, ui: &mut Ui, session: &Session, k: usize, name: &str) {
-        let axis = &mut self.axes[k];
-        let before = *axis;
-        let label = ui.label(name);
-        ComboBox::from_id_salt(("axis", k))
-            .selected_text(axis.quantity.title())
-            .width(130.0)
-            .show_ui(ui, |ui| {
-                for quantity in Column::quantities(session.study().named_quantities()) {
-                    if ui
-                        .selectable_label(axis.quantity == quantity, quantity.title())
-                        .clicked()
-                    {
-                        *axis = ScatterAxis::usual(quantity);
-                    }
-                }
-            })
-            .response
-            .labelled_by(label.id);
-        let log = ui.checkbox(&mut axis.log, "log");
-        log.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, axis.log, format!("{name} logarithmic")));
-        if before != *axis {
-            self.fitted = true;
-        }
-    }
-
-    /// Shows the values of the design under the pointer, and selects the design when it is clicked.
-    fn pointed(&self, response: &Response, session: &mut Session) {
-        let Some((pointer, transform)) = response.hover_pos().zip(self.transform) else {
-            return;
-        };
-        if response.dragged() {
-            return;
-        }
-        let near = |row: &Row| {
-            let at = transform.position_from_point(&self.place(row).into());
-            at.distance(pointer)
-        };
-        const REACH: f32 = 9.0;
-        let reference = session
-            .references()
-            .iter()
-            .position(|reference| near(&Row::new(0, &reference.evaluation)) < REACH);
-        let on_front = session
-            .front()
-            .iter()
-            .map(|entry| (near(&entry.row), entry.id))
-            .filter(|(distance, _)| *distance < REACH)
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, id)| id);
-        if let (Some(index), None) = (reference, on_front) {
-            let reference = &session.references()[index];
-            let design = reference.evaluation.design;
-            let values = text::quantities(session.study().shown_quantities(), &reference.evaluation.quantities);
-            let stated = reference
-                .stated
-                .iter()
-                .map(|&(quantity, value)| text::quantity(quantity, value));
-            let stated = stated.collect::<Vec<_>>().join(", ");
-            let stated = if stated.is_empty() {
-                stated
-            } else {
-                format!("\nstated: {stated}")
-            };
-            let words = format!("{}\nmodel: {values}{stated}", reference.name);
-            response.clone().on_hover_text_at_pointer(words);
-            if response.clicked() {
-                session.select_design(crate::Selected {
-                    design,
-                    origin: crate::DesignOrigin::Reference(index),
-                });
-            }
-            return;
-        }
-        let place = transform.value_from_position(pointer);
-        let wished = session.document().wished.iter();
-        let wished = wished
-            .map(|wished| Row::new(0, &wished.evaluation))
-            .position(|row| near(&row) < REACH);
-        if let Some(index) = wished.filter(|_| response.clicked()) {
-            session.select_wished(index);
-            return;
-        }
-        let Some(id) = on_front.or_else(|| self.cloud.at([place.x, place.y], 6)) else {
-            if response.clicked() {
-                self.ask_why([place.x, place.y], session);
-            }
-            return;
-        };
-        if let Some(row) = session.row(id) {
-            response
-                .clone()
-                .on_hover_ui_at_pointer(|ui| hover(ui, id, &row, session));
-        }
-        if response.clicked() {
-            session.select(id);
-        }
-    }
-
-    /// Asks why there is no design at a place, if the axes are objectives.
-    fn ask_why(&self, place: [f64; 2], session: &mut Session) {
-        let values = self
-            .axes
-            .iter()
-            .zip(place)
-            .filter_map(|(axis, place)| match axis.quantity {
-                Column::Quantity(quantity) => Some((quantity, axis.value(place))),
-                _ => None,
-            });
-        let values: Vec<_> = values.collect();
-        session.ask_why(&values);
     }
 
     fn draw_cloud(&mut self, ui: &Ui, session: &Session, dark: bool) {
@@ -498,86 +292,4 @@ fn axes_of(objectives: &[Column]) -> [ScatterAxis; 2] {
         let base = Column::Dimension(DesignVariable::BaseRadius);
         ScatterAxis::usual(objectives.get(place).copied().unwrap_or(base))
     })
-}
-
-/// Shows an architecture, with which the user excludes its designs or includes them again.
-fn include(ui: &mut Ui, session: &mut Session, architecture: Architecture) {
-    let dark = ui.visuals().dark_mode;
-    let hidden = session.document().filter.hidden.contains(&architecture);
-    let color = if hidden {
-        theme::infeasible(dark)
-    } else {
-        theme::architecture(architecture, dark)
-    };
-    let mark = ["●", "■", "▲", "◆"][theme::index(architecture) % 4];
-    let text = egui::RichText::new(format!("{mark} {}", text::architecture(architecture))).color(color);
-    let text = if hidden { text.strikethrough() } else { text };
-    let hover = "click to exclude this architecture (dimmed in all panels) or to include it again";
-    let button = ui.add(egui::Button::new(text).frame(false)).on_hover_text(hover);
-    let label = format!("include {architecture}");
-    button.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, !hidden, label.clone()));
-    if button.clicked() {
-        session.edit(|document| {
-            let hidden = &mut document.filter.hidden;
-            match hidden.iter().position(|&other| other == architecture) {
-                Some(place) => drop(hidden.remove(place)),
-                None => hidden.push(architecture),
-            }
-        });
-    }
-}
-
-/// Tells how many designs of the front pass the filter, with a button that removes each criterion.
-fn chips(ui: &mut Ui, session: &mut Session) {
-    let filter = session.document().filter.clone();
-    if filter.is_empty() {
-        return;
-    }
-    let mut kept = filter.clone();
-    ui.horizontal_wrapped(|ui| {
-        ui.strong(format!("{} of {} pass", session.passing().len(), session.front().len()));
-        let chip = |ui: &mut Ui, words: &str, name: &str| {
-            let button = ui.button(format!("{words}  ×"));
-            named(button, &format!("Remove the filter: {name}")).clicked()
-        };
-        if filter.feasible_only && chip(ui, "feasible", "feasible only") {
-            kept.feasible_only = false;
-        }
-        for (key, [low, high]) in &filter.ranges {
-            let title = Column::find_quantity(key).map_or_else(|| key.clone(), |column| column.title());
-            let words = format!("{title} {} … {}", theme::number(*low), theme::number(*high));
-            if chip(ui, &words, &title) {
-                kept.ranges.remove(key);
-            }
-        }
-        if !filter.hidden.is_empty() {
-            let names: Vec<String> = filter.hidden.iter().map(|hidden| text::architecture(*hidden)).collect();
-            if chip(ui, &format!("without {}", names.join(", ")), "architectures") {
-                kept.hidden.clear();
-            }
-        }
-    });
-    if kept != filter {
-        session.edit(|document| document.filter = kept);
-    }
-}
-
-/// Shows the values of a design.
-pub fn hover(ui: &mut Ui, id: usize, row: &Row, session: &Session) {
-    let verified = session
-        .place_on_front(id)
-        .is_some_and(|place| session.front()[place].verified);
-    let grid = if verified { "fine grid" } else { "reference grid" };
-    ui.strong(format!("#{id}  {}", row.design.architecture()));
-    let values = text::quantities(session.study().shown_quantities(), &row.quantities);
-    ui.label(format!("{values} ({grid})"));
-    let [base, platform, link, leg, bar] = row.design.values();
-    ui.label(format!("R {base:.3}  r {platform:.3}  L_b {link:.3} m"));
-    ui.label(format!("r_j {:.1}  r_p {:.1} mm", 1e3 * leg, 1e3 * bar));
-    if !row.is_feasible() {
-        ui.colored_label(theme::bad(ui), "infeasible");
-    }
-    if let Some(note) = session.document().notes.get(&id) {
-        ui.label(egui::RichText::new(note).italics());
-    }
 }
