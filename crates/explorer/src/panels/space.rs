@@ -2,7 +2,7 @@
 
 use egui::{FontId, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType};
 
-use super::scatter::ScatterAxis;
+use super::scatter::{ScatterAxis, objective_columns};
 use super::{range, say_empty};
 use crate::{Session, theme};
 use kinefront_model::mechanism::DESIGN_VARIABLES;
@@ -63,8 +63,7 @@ impl Projection {
 
 /// Returns the columns of the axes: the objectives, and dimensions where there are fewer than three.
 fn columns(session: &Session) -> [Column; 3] {
-    let objectives = session.study().objectives().into_iter();
-    let objectives = objectives.map(|objective| Column::Quantity(objective.quantity));
+    let objectives = objective_columns(session).into_iter();
     let mut columns = objectives.chain(DESIGN_VARIABLES.map(Column::Dimension));
     [(); 3].map(|()| columns.next().unwrap_or(Column::HomePhi))
 }

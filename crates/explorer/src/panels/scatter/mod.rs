@@ -153,9 +153,9 @@ impl Scatter {
             .response
             .widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Scatter of designs"));
         self.pointed(&shown.response, session);
-        self.draw_cloud(ui, session, dark);
-        self.arrows(ui);
+        self.draw_cloud(ui, session, &shown.transform, dark);
         let frame = *shown.transform.frame();
+        self.arrows(ui, frame);
         if session.store().is_empty() {
             let words = "Designs appear here as they are evaluated:\nstart a run in the panel Run, or open one.";
             say_empty(ui, &ui.painter_at(frame), frame.center(), words);
@@ -223,13 +223,9 @@ impl Scatter {
         plot
     }
 
-    fn draw_cloud(&mut self, ui: &Ui, session: &Session, dark: bool) {
-        let Some(transform) = self.transform else {
-            return;
-        };
-        let frame = transform.frame();
+    fn draw_cloud(&mut self, ui: &Ui, session: &Session, transform: &PlotTransform, dark: bool) {
+        let (frame, bounds) = (transform.frame(), transform.bounds());
         let pixels = ui.pixels_per_point().min(2.0);
-        let bounds = transform.bounds();
         let view = View {
             size: [frame.width(), frame.height()].map(|points| (points * pixels).round().clamp(16.0, 2048.0) as usize),
             low: bounds.min(),
@@ -250,10 +246,7 @@ impl Scatter {
     }
 
     /// Draws an arrow in the direction in which both quantities improve.
-    fn arrows(&self, ui: &Ui) {
-        let Some(transform) = self.transform else {
-            return;
-        };
+    fn arrows(&self, ui: &Ui, frame: Rect) {
         let way = |quantity: Column| match quantity.better() {
             Some(Better::Lower) => -1.0,
             Some(Better::Higher) => 1.0,
@@ -263,9 +256,8 @@ impl Scatter {
         if vector == Vec2::ZERO {
             return;
         }
-        let frame = transform.frame();
         let centre = frame.left_top() + Vec2::new(34.0, 34.0);
-        let painter = ui.painter_at(*frame);
+        let painter = ui.painter_at(frame);
         let stroke = Stroke::new(2.0, theme::good(ui));
         painter.arrow(centre - 12.0 * vector.normalized(), 24.0 * vector.normalized(), stroke);
         painter.text(
