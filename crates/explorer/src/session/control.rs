@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::super::{Filter, FrontEntry, Store, StudyEditor};
-use super::{GLANCE, Phase, Session, references};
+use super::{Phase, Session, references};
 use crate::AnyError;
 use crate::data::{DesignOrigin, Document, Selected};
 use crate::files::{Opened, open, run_folder_of};
@@ -258,8 +258,7 @@ impl Session {
         }
         self.follow();
         self.take_wish();
-        self.notices
-            .retain(|notice| notice.is_error || notice.since.elapsed() < GLANCE);
+        self.dismiss_seen();
         self.answer = self.scene.answer();
         // A design of the previous run may be selected again: its values are those of another study.
         if self.answer.study.as_ref().is_some_and(|study| *study != self.as_run) {

@@ -5,7 +5,9 @@ mod asking;
 mod beside;
 mod control;
 mod motion;
+mod notices;
 mod pose;
+mod selected;
 mod selection;
 mod vibration;
 
@@ -17,17 +19,18 @@ use std::time::{Duration, Instant};
 use self::asking::Asking;
 pub use self::asking::WhyPoint;
 pub use self::beside::Beside;
+pub use self::notices::Notice;
 pub use self::selection::MarkedCounts;
 pub use self::vibration::{PoseDynamics, ShownVibration};
-use super::data::{DesignOrigin, Document, History, Named, Selected};
+use super::data::{Document, History, Named};
 use super::files::Purpose;
-use super::threads::{Answer, Known, Running, SceneThread, Wake, Writing};
+use super::threads::{Answer, Running, SceneThread, Wake, Writing};
 use super::{Filter, FrontEntry, Row, Store, StudyEditor};
 use kinefront_model::evaluation::{Evaluation, GridChoice, Model, Quantity};
 use kinefront_model::spatial::Pose;
 use kinefront_recording::{FrontPoint, LiveScene, Viewpoint, VisibleLayers};
-use kinefront_scene::{Field, FieldLegend, StressLegend, WorkspaceProof};
-use kinefront_study::{CertifiedWorkspace, Column, ConclusionPart, EndReason, GenerationSummary, PreparedStudy, Study};
+use kinefront_scene::{FieldLegend, StressLegend};
+use kinefront_study::{Column, ConclusionPart, EndReason, GenerationSummary, PreparedStudy, Study};
 
 /// Largest number of designs that can be pinned for comparison.
 pub const MOST_PINS: usize = 4;
@@ -57,20 +60,6 @@ pub enum Phase {
     /// The run was read from this file or folder.
     Opened(PathBuf),
 }
-
-/// A message to the user; an error is shown until it is dismissed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Notice {
-    /// Text of the message.
-    pub text: String,
-    /// Whether the message reports an error.
-    pub is_error: bool,
-    /// Time at which the message was reported.
-    pub since: Instant,
-}
-
-/// Time for which a message is shown that is not an error.
-const GLANCE: Duration = Duration::from_secs(8);
 
 /// A reference design of the study.
 #[derive(Debug, Clone)]
@@ -222,26 +211,6 @@ impl Session {
         &mut self.view
     }
 
-    /// Returns the messages to the user, the oldest first.
-    pub fn notices(&self) -> &[Notice] {
-        &self.notices
-    }
-
-    /// Removes a message.
-    pub fn dismiss(&mut self, index: usize) {
-        self.notices.remove(index);
-    }
-
-    /// Removes all messages.
-    pub fn dismiss_all(&mut self) {
-        self.notices.clear();
-    }
-
-    /// Removes the messages that report no error.
-    pub fn dismiss_news(&mut self) {
-        self.notices.retain(|notice| notice.is_error);
-    }
-
     /// Requests a file from the user.
     pub fn request_file(&mut self, purpose: Purpose) {
         self.requested_file = Some(purpose);
@@ -323,21 +292,6 @@ impl Session {
         }
     }
 
-    /// Returns what the front states about the workspace of the selected design, if it is a design of a certified front.
-    pub fn certified(&self) -> Option<CertifiedWorkspace> {
-        match self.document().selected.as_ref()?.origin {
-            DesignOrigin::Evaluated(id) => self.front[self.place_on_front(id)?].certified,
-            DesignOrigin::Wished(index) => self.document().wished.get(index)?.certified,
-            _ => None,
-        }
-    }
-
-    /// Returns the proof of the workspace of the selected design, once it is known.
-    pub fn proof(&self) -> Option<&Arc<WorkspaceProof>> {
-        let design = self.document().selected_design()?;
-        self.answer.proof.as_ref().filter(|proof| proof.design == design)
-    }
-
     /// Returns the summary of each generation.
     pub fn generations(&self) -> &[GenerationSummary] {
         &self.generations
@@ -389,21 +343,6 @@ impl Session {
         self.history.present()
     }
 
-    /// Returns the evaluation of the selected design, if it is known.
-    pub fn known(&self) -> Option<&Known> {
-        let design = self.document().selected_design()?;
-        let known = self.answer.known.as_ref();
-        known.filter(|known| known.evaluation.design == design)
-    }
-
-    /// Returns the fields that have values for the selected design, or all without one.
-    pub fn fields(&self) -> Vec<Field> {
-        match self.document().selected_design() {
-            Some(design) => Field::of(self.model(), &design).collect(),
-            None => Field::all().collect(),
-        }
-    }
-
     /// Returns the legend of the heatmap that was drawn last, if there is one.
     pub fn legend(&self) -> Option<&FieldLegend> {
         self.answer.legends.field.as_ref()
@@ -433,58 +372,6 @@ impl Session {
     /// Returns whether everything requested of the scene is drawn.
     pub fn is_drawn(&self) -> bool {
         self.answer.drawn >= self.requested
-    }
-
-    /// Returns the name of the selected design.
-    pub fn selected_name(&self) -> Option<String> {
-        let document = self.document();
-        Some(match &document.selected.as_ref()?.origin {
-            DesignOrigin::Evaluated(id) => format!("#{id}"),
-            DesignOrigin::Modified { from: Some(id) } => format!("modified from #{id}"),
-            DesignOrigin::Modified { from: None } => "modified".to_owned(),
-            DesignOrigin::Kept(index) => document.kept.get(*index).map_or("kept", |kept| &kept.name).to_owned(),
-            DesignOrigin::Wished(index) => document
-                .wished
-                .get(*index)
-                .map_or("wish", |wished| &wished.name)
-                .to_owned(),
-            DesignOrigin::Reference(index) => self
-                .references
-                .get(*index)
-                .map_or("reference", |reference| &reference.name)
-                .to_owned(),
-        })
-    }
-
-    /// Returns whether the selected design is a modified design that was not kept.
-    pub fn is_modified(&self) -> bool {
-        matches!(
-            self.document().selected,
-            Some(Selected {
-                origin: DesignOrigin::Modified { .. },
-                ..
-            })
-        )
-    }
-
-    /// Shows a message to the user.
-    pub fn notify(&mut self, text: String) {
-        self.put_notice(text, false);
-    }
-
-    /// Shows an error message to the user.
-    pub fn notify_error(&mut self, error: impl std::fmt::Display) {
-        self.put_notice(error.to_string(), true);
-    }
-
-    fn put_notice(&mut self, text: String, is_error: bool) {
-        // A message replaces an earlier one with the same text.
-        self.notices.retain(|notice| notice.text != text);
-        self.notices.push(Notice {
-            text,
-            is_error,
-            since: Instant::now(),
-        });
     }
 }
 
