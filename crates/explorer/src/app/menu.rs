@@ -104,14 +104,10 @@ impl Explorer {
         if ui.button("Reset layout").clicked() {
             self.tree = layout();
         }
-        let (other, theme) = if self.dark {
-            ("Light theme", egui::Theme::Light)
-        } else {
-            ("Dark theme", egui::Theme::Dark)
-        };
+        let other = if self.dark { "Light theme" } else { "Dark theme" };
         if ui.button(other).clicked() {
             self.dark = !self.dark;
-            ui.ctx().set_theme(theme);
+            ui.ctx().set_theme(egui::Theme::from_dark_mode(self.dark));
         }
     }
 
@@ -216,16 +212,7 @@ impl Explorer {
             // Below the 3-D view, which it explains.
             .anchor(egui::Align2::CENTER_BOTTOM, egui::vec2(0.0, -40.0))
             .show(ui.ctx(), |ui| {
-                egui::Grid::new("introduction")
-                    .num_columns(2)
-                    .spacing([18.0, 6.0])
-                    .show(ui, |ui| {
-                        for (panel, words) in LINES {
-                            ui.strong(panel);
-                            ui.label(words);
-                            ui.end_row();
-                        }
-                    });
+                explanations(ui, "introduction", [18.0, 6.0], &LINES);
                 ui.separator();
                 done = ui.button("Close").clicked();
             });
@@ -238,20 +225,23 @@ impl Explorer {
             .resizable(false)
             .collapsible(false)
             .show(ui.ctx(), |ui| {
-                egui::Grid::new("shortcuts")
-                    .num_columns(2)
-                    .spacing([24.0, 4.0])
-                    .show(ui, |ui| {
-                        for (keys, words) in SHORTCUTS {
-                            ui.strong(keys);
-                            ui.label(words);
-                            ui.end_row();
-                        }
-                    });
+                explanations(ui, "shortcuts", [24.0, 4.0], &SHORTCUTS);
                 ui.separator();
                 ui.weak("scatter: drag to pan, scroll to zoom, right-drag to zoom into a box, double-click to fit");
             });
     }
+}
+
+/// Shows lines of what is explained and what it is or does.
+fn explanations(ui: &mut Ui, id: &str, spacing: [f32; 2], lines: &[(&str, &str)]) {
+    let grid = egui::Grid::new(id).num_columns(2).spacing(spacing);
+    grid.show(ui, |ui| {
+        for (explained, words) in lines {
+            ui.strong(*explained);
+            ui.label(*words);
+            ui.end_row();
+        }
+    });
 }
 
 pub(super) fn phase_name(phase: &Phase) -> &'static str {

@@ -4,6 +4,7 @@ mod deliveries;
 mod focus;
 mod layout;
 mod menu;
+mod remembered;
 mod script;
 mod shortcuts;
 mod status;
@@ -20,18 +21,18 @@ use std::time::Duration;
 
 use egui::{Context, Ui, UserData, ViewportCommand};
 use egui_tiles::Tree;
-use serde::{Deserialize, Serialize};
 
 use self::deliveries::PendingScreenshot;
 use self::focus::FocusRing;
 use self::layout::{Drawing, layout};
+use self::remembered::Remembered;
 use super::files::{self, Dialog, Job, Purpose};
 use super::panels::scatter::{Scatter, ScatterAxis, objective_columns};
 use super::panels::{Panel, Panels};
 use super::platform_drag::PlatformDrag;
 use super::viewer::Viewer;
 use super::{Phase, Session, StudyEditor, Subject, theme};
-use kinefront_study::{Column, Study};
+use kinefront_study::Study;
 
 /// Content that the window opens with.
 #[derive(Debug, Clone)]
@@ -47,21 +48,6 @@ pub enum InitialContent {
     },
     /// Path of a run folder, of one of its tables, or of a recording.
     Run(PathBuf),
-}
-
-/// State of the window that is saved between two sessions.
-#[derive(Serialize, Deserialize)]
-struct Remembered {
-    tree: Tree<Panel>,
-    axes: [ScatterAxis; 2],
-    /// Names of the objectives for which the axes were chosen.
-    #[serde(default)]
-    objectives: Vec<String>,
-    recent: Vec<PathBuf>,
-    dark: bool,
-    /// Whether the introduction was closed.
-    #[serde(default)]
-    introduced: bool,
 }
 
 /// Result of a file job: the message to show on success or on failure.
@@ -140,25 +126,18 @@ impl Explorer {
             InitialContent::Run(path) => session.open(path),
         }
         // A script starts from the default layout, axes and theme, not from those of an earlier session.
-        let remembered: Option<Remembered> = cc
-            .storage
-            .filter(|_| script.is_none())
-            .and_then(|storage| eframe::get_value(storage, eframe::APP_KEY));
-        let introduce = cc.storage.is_some()
-            && script.is_none()
-            && !remembered.as_ref().is_some_and(|remembered| remembered.introduced);
+        let storage = cc.storage.filter(|_| script.is_none());
+        let remembered: Option<Remembered> = storage.and_then(|storage| eframe::get_value(storage, eframe::APP_KEY));
+        let is_introduced = remembered.as_ref().is_some_and(|remembered| remembered.introduced);
         let mut panels = Panels::default();
         let (tree, recent, dark) = match remembered {
             Some(remembered) => {
-                let objectives = remembered.objectives.iter();
-                let objectives = objectives.filter_map(|name| Column::find_quantity(name)).collect();
-                *panels.scatter_mut() = Scatter::new(remembered.axes, objectives);
+                *panels.scatter_mut() = remembered.scatter();
                 (remembered.tree, remembered.recent, remembered.dark)
             }
             None => (layout(), Vec::new(), true),
         };
-        cc.egui_ctx
-            .set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
+        cc.egui_ctx.set_theme(egui::Theme::from_dark_mode(dark));
         Ok(Self {
             session,
             panels,
@@ -170,7 +149,7 @@ impl Explorer {
             recent,
             dark,
             help: false,
-            introduction: introduce,
+            introduction: storage.is_some() && !is_introduced,
             pointer: VecDeque::new(),
             title: String::new(),
             requested: None,
@@ -329,21 +308,7 @@ impl eframe::App for Explorer {
         if self.script.is_some() {
             return;
         }
-        let remembered = Remembered {
-            tree: self.tree.clone(),
-            axes: self.panels.scatter().axes(),
-            objectives: self
-                .panels
-                .scatter()
-                .followed()
-                .iter()
-                .map(|column| column.name().into_owned())
-                .collect(),
-            recent: self.recent.clone(),
-            dark: self.dark,
-            introduced: !self.introduction,
-        };
-        eframe::set_value(storage, eframe::APP_KEY, &remembered);
+        eframe::set_value(storage, eframe::APP_KEY, &Remembered::of(self));
     }
 
     fn raw_input_hook(&mut self, ctx: &Context, input: &mut egui::RawInput) {

@@ -235,7 +235,7 @@ impl Script {
             Step::Violation => session.show_violation(),
             Step::Show(panel) => explorer.show(*panel),
             Step::Compare(on) => session.view_mut().comparing = *on,
-            Step::Dark(dark) => ctx.set_theme(if *dark { egui::Theme::Dark } else { egui::Theme::Light }),
+            Step::Dark(dark) => ctx.set_theme(egui::Theme::from_dark_mode(*dark)),
             Step::Look(viewpoint) => session.look_from(*viewpoint),
             Step::Point(at) => explorer.pointer.extend([Event::PointerMoved(*at)]),
             Step::Click(at) => explorer.pointer.extend(drag(&[*at])),
