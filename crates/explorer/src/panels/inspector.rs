@@ -160,11 +160,8 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
         }
         for quantity in Quantity::all().filter(|quantity| !HAVE_ROWS.contains(quantity)) {
             let entry = quantity.entry();
-            let known = evaluation
-                .quantities
-                .get(quantity)
-                .filter(|_| quantity.constraint().is_none());
-            if let Some(value) = known {
+            let known = evaluation.quantities.get(quantity);
+            if let Some(value) = known.filter(|_| quantity.constraint().is_none()) {
                 ui.label(entry.label).on_hover_text(entry.meaning);
                 ui.label(format!("{} {}", theme::number(value), entry.unit));
                 ui.end_row();
@@ -179,13 +176,8 @@ fn objectives(ui: &mut Ui, session: &Session, known: &Known) {
             ui.end_row();
         }
     });
-    masses(
-        ui,
-        [
-            model.legs_mass(&evaluation.design),
-            model.platform_mass(&evaluation.design),
-        ],
-    );
+    let design = &evaluation.design;
+    masses(ui, [model.legs_mass(design), model.platform_mass(design)]);
 }
 
 /// Shows the workspace of the selected design, whether it is feasible, and how it was examined.

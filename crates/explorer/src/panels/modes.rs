@@ -113,18 +113,13 @@ impl ModesView {
         let Some((modes, (_, pose))) = self.modes.as_ref().zip(self.of) else {
             return;
         };
+        let geometry = &session.model().settings().legs.geometry;
         for mode in modes.modes.iter().filter(|mode| !is_at(&mode.pose, &pose)) {
             let turn = Rotation::new(mode.pose.phi);
-            let joint = |leg: usize| {
-                let joint = session
-                    .model()
-                    .settings()
-                    .legs
-                    .geometry
-                    .platform_joint(leg, design.platform_radius());
+            let corners = [0, 1, 2].map(|leg| {
+                let joint = geometry.platform_joint(leg, design.platform_radius());
                 plan.screen(mode.pose.position + turn.apply(joint))
-            };
-            let corners = [joint(0), joint(1), joint(2)];
+            });
             let shown = if mode.is_of_design { 0.75 } else { 0.35 };
             let stroke = Stroke::new(1.2, color.gamma_multiply(shown));
             let middle = plan.screen(mode.pose.position);
