@@ -40,10 +40,10 @@ use std::time::Instant;
 use egui::{Context, Event, Modifiers, PointerButton, Pos2, ViewportCommand};
 
 use super::Explorer;
-use crate::Phase;
 use crate::files::Purpose;
 use crate::panels::Panel;
 use crate::panels::scatter::{Coloring, DragTool};
+use crate::{Phase, Session};
 use kinefront_model::evaluation::Constraint;
 use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
 use kinefront_model::spatial::Pose;
@@ -60,7 +60,7 @@ pub struct Script {
     times: Option<(PathBuf, Vec<f64>, Instant)>,
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 enum Step {
     WaitFinished,
     WaitEvaluations(usize),
@@ -69,19 +69,16 @@ enum Step {
     WaitProved,
     WaitFrames(usize),
     WaitBusy,
-    SelectKnee,
+    /// Does what a button does.
+    Press(fn(&mut Session)),
     Choose(usize),
     ChooseDesign(String),
     Walk(isize),
-    Pin,
-    Keep,
-    Star,
     Modify(DesignVariable, f64),
     Heatmap(Option<Field>),
     Ellipsoids(Option<EllipsoidKind>),
     Pose(Pose),
     Worst(Constraint),
-    Violation,
     Show(Panel),
     Compare(bool),
     Dark(bool),
@@ -91,10 +88,6 @@ enum Step {
     Color(Coloring),
     Size(Pos2),
     Point(Pos2),
-    Click(Pos2),
-    Pause,
-    Resume,
-    Stop,
     Filter(Column, [f64; 2]),
     File(Purpose, PathBuf),
     Frames(PathBuf),
@@ -220,32 +213,24 @@ impl Script {
             Step::WaitFrames(count) => return self.frames >= *count,
             // A picture arrives some frames after its request.
             Step::WaitBusy => return !busy && self.frames > 6,
-            Step::SelectKnee => session.select_knee(),
+            Step::Press(press) => press(session),
             Step::Choose(id) => session.select(*id),
             Step::ChooseDesign(text) => session.paste(text),
             Step::Walk(steps) => session.walk(*steps),
-            Step::Pin => session.toggle_pin(),
-            Step::Keep => session.keep(),
-            Step::Star => session.toggle_star(),
             Step::Modify(variable, value) => session.modify(*variable, *value),
             Step::Heatmap(field) => session.view_mut().layers.heatmap = *field,
             Step::Ellipsoids(kind) => session.view_mut().layers.ellipsoids = *kind,
             Step::Pose(pose) => drop(session.move_platform(*pose)),
             Step::Worst(constraint) => session.show_worst(*constraint),
-            Step::Violation => session.show_violation(),
             Step::Show(panel) => explorer.show(*panel),
             Step::Compare(on) => session.view_mut().comparing = *on,
             Step::Dark(dark) => ctx.set_theme(egui::Theme::from_dark_mode(*dark)),
             Step::Look(viewpoint) => session.look_from(*viewpoint),
             Step::Point(at) => explorer.pointer.extend([Event::PointerMoved(*at)]),
-            Step::Click(at) => explorer.pointer.extend(drag(&[*at])),
             Step::Drag(path) => explorer.pointer.extend(drag(path)),
             Step::Tool(tool) => explorer.scatter_mut().set_tool(*tool),
             Step::Color(coloring) => explorer.scatter_mut().set_coloring(*coloring),
             Step::Size(size) => ctx.send_viewport_cmd(ViewportCommand::InnerSize(size.to_vec2())),
-            Step::Pause => session.pause(),
-            Step::Resume => session.resume(),
-            Step::Stop => session.stop(),
             Step::Filter(quantity, range) => {
                 session.edit(|document| document.filter.set_range(*quantity, Some(*range)))
             }
@@ -326,14 +311,14 @@ fn step(line: &str) -> Option<Step> {
         },
         "choose" => match rest.strip_prefix('#') {
             Some(id) => Step::Choose(id.parse().ok()?),
-            None if rest == "knee" => Step::SelectKnee,
+            None if rest == "knee" => Step::Press(Session::select_knee),
             None if rest.is_empty() => return None,
             None => Step::ChooseDesign(rest.to_owned()),
         },
         "walk" => Step::Walk(rest.parse().ok()?),
-        "pin" => Step::Pin,
-        "keep" => Step::Keep,
-        "star" => Step::Star,
+        "pin" => Step::Press(Session::toggle_pin),
+        "keep" => Step::Press(Session::keep),
+        "star" => Step::Press(Session::toggle_star),
         "what-if" => {
             let (key, value) = rest.split_once('=')?;
             let mut variables = DESIGN_VARIABLES.into_iter().chain(FURTHER_VARIABLES);
@@ -346,7 +331,7 @@ fn step(line: &str) -> Option<Step> {
         "ellipsoids" => Step::Ellipsoids(Some(EllipsoidKind::ALL.into_iter().find(|kind| kind.key() == rest)?)),
         "pose" => Step::Pose(rest.parse().ok()?),
         "worst" => Step::Worst(Constraint::ALL.into_iter().find(|constraint| constraint.id() == rest)?),
-        "violation" if rest.is_empty() => Step::Violation,
+        "violation" if rest.is_empty() => Step::Press(Session::show_violation),
         "show" => Step::Show(Panel::ALL.iter().copied().find(|panel| panel.title() == rest)?),
         "compare" => Step::Compare(rest == "on"),
         "theme" => Step::Dark(rest != "light"),
@@ -356,14 +341,14 @@ fn step(line: &str) -> Option<Step> {
                 .find(|viewpoint| viewpoint.name().eq_ignore_ascii_case(rest))?,
         ),
         "point" => Step::Point(place(rest)?),
-        "click" => Step::Click(place(rest)?),
+        "click" => Step::Drag(vec![place(rest)?]),
         "drag" => Step::Drag(places(rest)?),
         "tool" => Step::Tool(DragTool::find(rest)?),
         "color" => Step::Color(Coloring::find(rest)?),
         "size" => Step::Size(place(rest)?),
-        "pause" => Step::Pause,
-        "resume" => Step::Resume,
-        "stop" => Step::Stop,
+        "pause" => Step::Press(Session::pause),
+        "resume" => Step::Press(Session::resume),
+        "stop" => Step::Press(Session::stop),
         "filter" => {
             let mut words = rest.split_whitespace();
             let quantity = Column::find_quantity(words.next()?)?;
