@@ -74,8 +74,7 @@ impl Stream {
             study: Arc::new(study),
             threads: 1,
         }));
-        let mut archive = Archive::default();
-        let mut members: Vec<FrontMember> = Vec::new();
+        let mut sent = SentFront::default();
         let mut history = Vec::new();
         let began = Instant::now();
         for generation in 1..=self.count / GENERATION {
@@ -87,20 +86,6 @@ impl Stream {
             let evaluations: Vec<Evaluation> = (first_id..first_id + GENERATION)
                 .map(|id| self.evaluation(id))
                 .collect();
-            let mut changed = false;
-            for (offset, evaluation) in evaluations.iter().enumerate() {
-                let id = first_id + offset;
-                if archive.insert(id, &[], &DesignProblem::outcome(evaluation)) {
-                    changed = true;
-                    members.push(FrontMember {
-                        id,
-                        generation,
-                        evaluation: evaluation.clone(),
-                        reference_radius: evaluation.workspace_radius(),
-                        certified: None,
-                    });
-                }
-            }
             waited += tell(Event::Evaluated(Batch {
                 generation,
                 first_id,
@@ -109,22 +94,18 @@ impl Stream {
                     .map(|evaluation| Row::new(generation, evaluation))
                     .collect(),
             }));
-            if changed {
-                members.retain(|member| archive.iter().any(|kept| kept.id == member.id));
-                members.sort_by(|a, b| a.evaluation.mass().total_cmp(&b.evaluation.mass()));
-                let front = members.iter().map(|member| {
-                    Arc::new(TableRow::new(
-                        member.id,
-                        Row::new(member.generation, &member.evaluation),
-                    ))
-                });
-                waited += tell(Event::Front(front.collect()));
+            if sent.add(generation, first_id, &evaluations) {
+                let row = |member: &FrontMember| {
+                    let row = Row::new(member.generation, &member.evaluation);
+                    Arc::new(TableRow::new(member.id, row))
+                };
+                waited += tell(Event::Front(sent.members.iter().map(row).collect()));
             }
             let summary = GenerationSummary {
                 generation,
                 evaluations: first_id + GENERATION,
                 feasible: first_id / 2,
-                front_size: archive.len(),
+                front_size: sent.archive.len(),
                 hypervolume: generation as f64,
             };
             history.push(summary);
@@ -134,14 +115,47 @@ impl Stream {
             outcome: EndReason::Completed,
             threads: 1,
             history,
-            verified: members.len(),
-            front: members,
+            verified: sent.members.len(),
+            front: sent.members,
             dropped: 0,
             verified_hypervolume: 0.0,
             proofs: None,
             times: RunTimes::default(),
         }));
         waited
+    }
+}
+
+/// The front of the designs that were sent.
+#[derive(Default)]
+struct SentFront {
+    archive: Archive,
+    members: Vec<FrontMember>,
+}
+
+impl SentFront {
+    /// Adds the designs of a generation; returns whether the front has changed.
+    fn add(&mut self, generation: usize, first_id: usize, evaluations: &[Evaluation]) -> bool {
+        let mut changed = false;
+        for (id, evaluation) in (first_id..).zip(evaluations) {
+            if self.archive.insert(id, &[], &DesignProblem::outcome(evaluation)) {
+                changed = true;
+                self.members.push(FrontMember {
+                    id,
+                    generation,
+                    evaluation: evaluation.clone(),
+                    reference_radius: evaluation.workspace_radius(),
+                    certified: None,
+                });
+            }
+        }
+        if changed {
+            self.members
+                .retain(|member| self.archive.iter().any(|kept| kept.id == member.id));
+            self.members
+                .sort_by(|a, b| a.evaluation.mass().total_cmp(&b.evaluation.mass()));
+        }
+        changed
     }
 }
 
