@@ -114,7 +114,7 @@ impl Session {
                     self.edit_study(editor);
                     self.notify(format!("the study {} is ready to run", path.display()));
                 }
-                Err(error) => self.notify_error(error.to_string()),
+                Err(error) => self.notify_error(error),
             }
             return;
         }
@@ -138,7 +138,7 @@ impl Session {
                 self.phase = Phase::Opened(path.to_owned());
                 self.select_knee();
             }
-            Err(error) => self.notify_error(error.to_string()),
+            Err(error) => self.notify_error(error),
         }
     }
 

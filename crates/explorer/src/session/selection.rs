@@ -176,7 +176,7 @@ impl Session {
                     });
                 });
             }
-            Err(error) => self.notify_error(error.to_string()),
+            Err(error) => self.notify_error(error),
         }
     }
 
