@@ -98,6 +98,14 @@ pub enum RunFolderError {
 }
 
 impl RunFolderError {
+    /// Converts an I/O error of the file at `path`.
+    fn at(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        move |cause| Self::Read {
+            path: path.to_owned(),
+            cause,
+        }
+    }
+
     /// Whether the system is the reason, and not what is in the folder.
     pub fn is_of_system(&self) -> bool {
         matches!(self, Self::Read { .. } | Self::Threads { .. })
@@ -132,10 +140,7 @@ impl RunFolder {
         let state = RunState::read(path)?;
         let study = path.join(STUDY);
         // A pipe in the place of a file may never end.
-        open_regular(&study, u64::MAX).map_err(|cause| RunFolderError::Read {
-            path: study.clone(),
-            cause,
-        })?;
+        open_regular(&study, u64::MAX).map_err(RunFolderError::at(&study))?;
         if let Some(sum) = state.sums().and_then(|sums| sums.study) {
             check(&study, &sum, false)?;
         }
@@ -216,10 +221,7 @@ impl RunFolder {
             file.take(header.len() as u64).read_to_end(&mut found)?;
             Ok(found)
         });
-        let failed = |fault: TableFault| TableError {
-            path: path.clone(),
-            fault,
-        };
+        let failed = TableError::at(&path);
         let found = found.map_err(|error| failed(error.into()))?;
         if found != header && header.starts_with(&found) {
             return Ok(TableContents {
@@ -362,12 +364,7 @@ fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, RunFolderErr
     let text = match read_regular(path, LARGEST_JSON) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        Err(cause) => {
-            return Err(RunFolderError::Read {
-                path: path.to_owned(),
-                cause,
-            });
-        }
+        Err(error) => return Err(RunFolderError::at(path)(error)),
     };
     let damaged = |cause| RunFolderError::Damaged {
         path: path.to_owned(),
@@ -396,16 +393,13 @@ fn header(study: &Study) -> Vec<u8> {
 }
 
 fn check(path: &Path, sum: &FileSum, may_grow: bool) -> Result<(), RunFolderError> {
-    let difference = sum.compare(path, may_grow).map_err(|cause| RunFolderError::Read {
-        path: path.to_owned(),
-        cause,
-    })?;
-    difference.map_or(Ok(()), |difference| {
-        Err(RunFolderError::Differs {
+    match sum.compare(path, may_grow).map_err(RunFolderError::at(path))? {
+        None => Ok(()),
+        Some(difference) => Err(RunFolderError::Differs {
             path: path.to_owned(),
             difference,
-        })
-    })
+        }),
+    }
 }
 
 fn compare_table(path: &Path, sum: &FileSum, may_grow: bool) -> Result<(), TableError> {
@@ -414,8 +408,5 @@ fn compare_table(path: &Path, sum: &FileSum, may_grow: bool) -> Result<(), Table
         Ok(Some(difference)) => difference.into(),
         Err(error) => error.into(),
     };
-    Err(TableError {
-        path: path.to_owned(),
-        fault,
-    })
+    Err(TableError::at(path)(fault))
 }

@@ -249,17 +249,21 @@ macro_rules! section {
     };
 }
 
-/// Declares the settings of a section whose structure stands in another crate.
+/// Declares the settings of a section whose structure stands elsewhere.
+///
+/// A key is declared as `key: check, description;`, and one that may be omitted as `key: check, description, initial value;`.
 macro_rules! settings {
-    ($section:literal { $($key:ident: $check:expr, $description:literal;)* }) => {
+    ($section:literal { $($key:ident: $check:expr, $description:literal $(, $initial:expr)?;)* }) => {
         &[$($crate::Setting {
             section: $section,
             key: stringify!($key),
             description: $description,
             check: $check,
-            initial: None,
+            initial: settings!(@initial $($initial)?),
         },)*]
     };
+    (@initial) => { None };
+    (@initial $initial:expr) => { Some($initial) };
 }
 
 pub(super) use {section, settings};

@@ -97,50 +97,18 @@ const SECTIONS: [&[Setting]; 33] = [
         ray_steps: Check::Count(1, 10_000), "Number of steps of a ray per length `R`.";
         halvings: Check::Count(0, 40), "Number of halvings of the first failing step of a ray.";
     }),
-    &[
-        Setting {
-            section: "optimizer",
-            key: "algorithm",
-            description: "Algorithm of the search.",
-            check: Check::Choice(&AlgorithmName::NAMES),
-            initial: None,
-        },
-        Setting {
-            section: "optimizer",
-            key: "evaluations",
-            description: "Number of evaluations, the first sample included.",
-            check: Check::Count(1, MOST),
-            initial: None,
-        },
-        Setting {
-            section: "optimizer",
-            key: "seed",
-            description: "Random seed, which determines every random draw.",
-            check: Check::Count(0, i64::MAX),
-            initial: None,
-        },
-        Setting {
-            section: "optimizer",
-            key: "time_limit_s",
-            description: "The search ends after the generation in which this time is reached; the result then depends on the machine.",
-            check: Check::Positive,
-            initial: Some(Initial::Number(60.0)),
-        },
-        Setting {
-            section: "optimizer",
-            key: "front_designs",
-            description: "Number of designs that are reported: those that together cover the front best, including the ends and the knee.",
-            check: Check::Count(3, WHOLE_FRONT as i64),
-            initial: None,
-        },
-        Setting {
-            section: "optimizer",
-            key: "threads",
-            description: "Number of worker threads; all cores if omitted. The result does not depend on it.",
-            check: Check::Count(1, 1024),
-            initial: Some(Initial::Count(2)),
-        },
-    ],
+    settings!("optimizer" {
+        algorithm: Check::Choice(&AlgorithmName::NAMES), "Algorithm of the search.";
+        evaluations: Check::Count(1, MOST), "Number of evaluations, the first sample included.";
+        seed: Check::Count(0, i64::MAX), "Random seed, which determines every random draw.";
+        time_limit_s: Check::Positive,
+            "The search ends after the generation in which this time is reached; the result then depends on the machine.",
+            Initial::Number(60.0);
+        front_designs: Check::Count(3, WHOLE_FRONT as i64),
+            "Number of designs that are reported: those that together cover the front best, including the ends and the knee.";
+        threads: Check::Count(1, 1024),
+            "Number of worker threads; all cores if omitted. The result does not depend on it.", Initial::Count(2);
+    }),
     settings!("optimizer.stagnation" {
         evaluations: Check::Count(1, MOST), "Number of evaluations over which the gain is measured.";
         gain: Check::NonNegative, "Smallest relative gain of the hypervolume with which the search continues.";
@@ -164,43 +132,15 @@ const SECTIONS: [&[Setting]; 33] = [
         mutation_ratio: PROBABILITY, "Fraction of the bits that a mutation flips.";
         penalty: Check::NonNegative, "Penalty added to both objectives per unit of violation.";
     }),
-    &[
-        Setting {
-            section: "optimizer.nsga2",
-            key: "population",
-            description: "Population size.",
-            check: Check::Count(2, 65_536),
-            initial: None,
-        },
-        Setting {
-            section: "optimizer.nsga2",
-            key: "crossover",
-            description: "Probability that a pair is crossed rather than copied.",
-            check: PROBABILITY,
-            initial: None,
-        },
-        Setting {
-            section: "optimizer.nsga2",
-            key: "crossover_index",
-            description: "Distribution index of the crossover: the larger it is, the closer the children are to their parents.",
-            check: Check::NonNegative,
-            initial: None,
-        },
-        Setting {
-            section: "optimizer.nsga2",
-            key: "mutation",
-            description: "Mutation probability of a variable; if omitted, the reciprocal of the number of variables.",
-            check: PROBABILITY,
-            initial: Some(Initial::Number(0.2)),
-        },
-        Setting {
-            section: "optimizer.nsga2",
-            key: "mutation_index",
-            description: "Distribution index of the mutation.",
-            check: Check::NonNegative,
-            initial: None,
-        },
-    ],
+    settings!("optimizer.nsga2" {
+        population: Check::Count(2, 65_536), "Population size.";
+        crossover: PROBABILITY, "Probability that a pair is crossed rather than copied.";
+        crossover_index: Check::NonNegative,
+            "Distribution index of the crossover: the larger it is, the closer the children are to their parents.";
+        mutation: PROBABILITY,
+            "Mutation probability of a variable; if omitted, the reciprocal of the number of variables.", Initial::Number(0.2);
+        mutation_index: Check::NonNegative, "Distribution index of the mutation.";
+    }),
     settings!("optimizer.cma_es" {
         sample: Check::Count(4, 65_536), "Number of candidates of the first sample for each architecture.";
         population: Check::Count(4, 65_536), "Number of candidates of a generation.";

@@ -20,6 +20,16 @@ pub struct TableError {
     pub fault: TableFault,
 }
 
+impl TableError {
+    /// Converts what is wrong with the table at `path`.
+    pub(crate) fn at(path: &Path) -> impl Fn(TableFault) -> Self {
+        move |fault| Self {
+            path: path.to_owned(),
+            fault,
+        }
+    }
+}
+
 /// What is wrong with a table.
 #[derive(Debug, thiserror::Error)]
 pub enum TableFault {
@@ -112,10 +122,7 @@ pub fn read_table(path: &Path, study: &Study) -> Result<TableContents, TableErro
         }
         Ok(TableContents { rows, cut_line })
     };
-    read().map_err(|fault| TableError {
-        path: path.to_owned(),
-        fault,
-    })
+    read().map_err(TableError::at(path))
 }
 
 /// Reads the table of all designs of a run, whose ids count from 0 without gaps and whose generations never decrease.
@@ -124,10 +131,7 @@ pub fn read_table(path: &Path, study: &Study) -> Result<TableContents, TableErro
 /// [`TableError`], which names the line and what is wrong in it.
 pub fn read_run_table(path: &Path, study: &Study) -> Result<TableContents, TableError> {
     let contents = read_table(path, study)?;
-    check_order(&contents.rows).map_err(|fault| TableError {
-        path: path.to_owned(),
-        fault,
-    })?;
+    check_order(&contents.rows).map_err(TableError::at(path))?;
     Ok(contents)
 }
 
@@ -169,10 +173,7 @@ pub fn read_designs(path: &Path, study: &Study) -> Result<Vec<(usize, Design)>, 
         }
         Ok(rows)
     };
-    read().map_err(|fault| TableError {
-        path: path.to_owned(),
-        fault,
-    })
+    read().map_err(TableError::at(path))
 }
 
 /// The fields of a line, by column.
@@ -284,12 +285,6 @@ struct LineLimit {
     since: usize,
 }
 
-impl LineLimit {
-    fn new(file: File) -> Self {
-        Self { file, since: 0 }
-    }
-}
-
 impl Read for LineLimit {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.file.read(buffer)?;
@@ -332,7 +327,7 @@ impl TableReader {
             file.read_exact(&mut last)?;
             file.rewind()?;
         }
-        let mut records = csv::Reader::from_reader(BufReader::new(LineLimit::new(file)));
+        let mut records = csv::Reader::from_reader(BufReader::new(LineLimit { file, since: 0 }));
         let columns = match records.headers() {
             Ok(header) => header.iter().map(Column::find).collect(),
             Err(error) => return Err(csv_fault(&error, 1)),
