@@ -91,18 +91,9 @@ impl Inspection {
             self.add(path.clone(), message, Some(Repair::Cut));
         }
         let (study, rows) = (self.folder.study().clone(), contents.rows.clone());
-        let search = if self.folder.merged().is_empty() {
-            StudySearch::resume(study, rows, None)
-        } else {
-            StudySearch::of_rows(study, rows, None)
-        };
-        let search = match search {
+        let search = match self.folder.replayed(study, rows, None)? {
             Ok(search) => search,
             Err(cause) => {
-                let cause = match RunFolderError::of_system(cause, &path) {
-                    Ok(error) => return Err(error),
-                    Err(cause) => cause,
-                };
                 self.add(path, cause.to_string(), None);
                 return Ok(());
             }

@@ -7,9 +7,9 @@ use serde::de::DeserializeOwned;
 
 use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY};
 use crate::{
-    Column, Study, StudyError, TableContents, TableError, TableFault, read_run_table, read_table, table_bytes,
+    Column, Study, StudyError, TableContents, TableError, TableFault, TableRow, read_run_table, read_table, table_bytes,
 };
-use crate::{Difference, FileSum, ReplayError, SearchError, open_regular, read_regular};
+use crate::{Difference, FileSum, ReplayError, SearchError, StudySearch, open_regular, read_regular};
 
 /// Largest `run.json` \[bytes\]: the history of ten million generations.
 const LARGEST_JSON: u64 = 1 << 32;
@@ -109,17 +109,6 @@ impl RunFolderError {
     /// Whether the system is the reason, and not what is in the folder.
     pub fn is_of_system(&self) -> bool {
         matches!(self, Self::Read { .. } | Self::Threads { .. })
-    }
-
-    /// Separates what the system lacks for the replay of the designs at `path` from what is wrong with them.
-    pub(super) fn of_system(cause: ReplayError, path: &Path) -> Result<Self, ReplayError> {
-        match cause {
-            ReplayError::Search(SearchError::Threads(cause)) => Ok(Self::Threads {
-                path: path.to_owned(),
-                cause,
-            }),
-            cause => Err(cause),
-        }
     }
 }
 
@@ -234,6 +223,30 @@ impl RunFolder {
             return Err(failed(TableFault::Header));
         }
         read_run_table(&path, &self.study)
+    }
+
+    /// Replays designs of the folder in a search of `study`, which may have another budget than the one of the folder. The inner error is what
+    /// is wrong with the designs.
+    ///
+    /// # Errors
+    /// [`RunFolderError::Threads`], which says nothing of the designs.
+    pub(super) fn replayed(
+        &self,
+        study: Study,
+        rows: Vec<TableRow>,
+        threads: Option<usize>,
+    ) -> Result<Result<StudySearch, ReplayError>, RunFolderError> {
+        let search = match self.merged() {
+            [] => StudySearch::resume(study, rows, threads),
+            _ => StudySearch::of_rows(study, rows, threads),
+        };
+        match search {
+            Err(ReplayError::Search(SearchError::Threads(cause))) => Err(RunFolderError::Threads {
+                path: self.designs_path(),
+                cause,
+            }),
+            search => Ok(search),
+        }
     }
 
     /// Reads the verified front; `None` for a run that did not verify one.

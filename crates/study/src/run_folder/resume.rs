@@ -9,7 +9,7 @@ use super::lock::open_locked;
 use super::{DESIGNS, RECORDING, RunFolder, RunFolderError, RunWriter};
 use crate::WriteError;
 use crate::durable::remove;
-use crate::{EndReason, ReplayError, StudySearch, TableError};
+use crate::{EndReason, ReplayError, Study, StudySearch, TableError};
 
 /// A run that can be resumed: its folder is locked, and its designs were replayed.
 ///
@@ -117,34 +117,14 @@ impl Resumption {
         let table = DesignTable::over(file, path, folder.study());
         let contents = folder.designs_to_resume(&mut notes)?;
         let evaluated = contents.rows.len();
-        let mut study = folder.study().clone();
-        if let Some(asked) = evaluations {
-            if asked < evaluated {
-                return Err(ResumeError::Budget {
-                    path: path.to_owned(),
-                    evaluated,
-                    asked,
-                });
-            }
-            study.optimizer.evaluations = asked;
-        }
+        let study = study_to_resume(&folder, evaluations, evaluated)?;
         if let Some(line) = contents.cut_line {
             notes.push(format!("line {line} of {DESIGNS} was incomplete and was removed"));
         }
-        let is_merged = !folder.merged().is_empty();
-        // A merged folder is complete, or its merge was killed; nothing can be searched in it.
-        if is_merged && study.optimizer.evaluations != evaluated {
-            return Err(ResumeError::Merged(path.to_owned()));
-        }
-        let search = if is_merged {
-            StudySearch::of_rows(study, contents.rows, threads)
-        } else {
-            StudySearch::resume(study, contents.rows, threads)
-        };
-        let path = folder.designs_path();
-        let search = search.map_err(|cause| match RunFolderError::of_system(cause, &path) {
-            Ok(error) => error.into(),
-            Err(cause) => ResumeError::Replay { path, cause },
+        let search = folder.replayed(study, contents.rows, threads)?;
+        let search = search.map_err(|cause| ResumeError::Replay {
+            path: folder.designs_path(),
+            cause,
         })?;
         let kept = search.replayed();
         if kept < evaluated {
@@ -238,6 +218,26 @@ impl Resumption {
         remove(&path.join(RECORDING))?;
         Ok((writer, search))
     }
+}
+
+/// Returns the study of a folder with the number of evaluations that is asked for, if the folder's designs allow it.
+fn study_to_resume(folder: &RunFolder, asked: Option<usize>, evaluated: usize) -> Result<Study, ResumeError> {
+    let mut study = folder.study().clone();
+    if let Some(asked) = asked {
+        if asked < evaluated {
+            return Err(ResumeError::Budget {
+                path: folder.path().to_owned(),
+                evaluated,
+                asked,
+            });
+        }
+        study.optimizer.evaluations = asked;
+    }
+    // A merged folder is complete, or its merge was killed; nothing can be searched in it.
+    if !folder.merged().is_empty() && study.optimizer.evaluations != evaluated {
+        return Err(ResumeError::Merged(folder.path().to_owned()));
+    }
+    Ok(study)
 }
 
 /// Returns the byte at which row `rows` of a table ends, where 0 is the header; `None` if the header is incomplete.
