@@ -2,7 +2,9 @@
 
 use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::{Architecture, Design, DesignVariable};
-use kinefront_study::{Builtin, DesignProblem, DriversAlong, Study};
+use kinefront_study::{DesignProblem, DriversAlong, Study};
+
+use super::{builtin, problem};
 
 /// Neighbours on the front of the 3-RPR, with home orientations of about 12°, 148° and 164°.
 const BELOW: &str =
@@ -13,10 +15,8 @@ const ABOVE: [&str; 2] = [
 ];
 
 fn study() -> Study {
-    let paper = Builtin::find("paper").expect("the paper");
-    let mut study = paper.study().expect("a valid study");
-    study.architectures = vec![Architecture::Rpr];
-    study
+    let paper = builtin("paper").study().expect("a valid study");
+    paper.with_one_architecture(Architecture::Rpr)
 }
 
 fn evaluated(designs: &[&str]) -> (DesignProblem, Vec<Evaluation>) {
@@ -25,7 +25,7 @@ fn evaluated(designs: &[&str]) -> (DesignProblem, Vec<Evaluation>) {
         .iter()
         .map(|design| Design::parse(design, study.working_mode).expect("a design"))
         .collect();
-    let problem = DesignProblem::new(&study).expect("a valid study");
+    let problem = problem(&study);
     let evaluations = problem.evaluate_on_fine_grid(&designs);
     (problem, evaluations)
 }
@@ -58,7 +58,7 @@ fn a_family_takes_over_from_another_of_the_same_architecture() {
         // At its home orientation, each of the two has the radius at which they meet, with bars that leave room for rounding.
         let mut study = study();
         study.workspace.home_phi_deg = Some(home);
-        let at_home = DesignProblem::new(&study).expect("a valid study");
+        let at_home = super::problem(&study);
         let radius = at_home.evaluate_on_fine_grid(&[thicker(design)])[0].workspace_radius();
         assert!((radius / crossing.at - 1.0).abs() < 2e-3, "{radius}, {crossing:?}");
     }

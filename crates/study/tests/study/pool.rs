@@ -4,7 +4,9 @@ use kinefront_model::certify::{CertifyOptions, ExaminedBox, ProofObserver, Verdi
 use kinefront_model::evaluation::{GridChoice, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::workers::OneWorker;
-use kinefront_study::{Builtin, PoolWorkers, PreparedStudy, Study};
+use kinefront_study::{Builtin, PoolWorkers, PreparedStudy};
+
+use super::builtin;
 
 /// A design of the front of the study `builders-cell`, with its home orientation \[deg\].
 const OF_THE_CELL: (&str, f64) = (
@@ -13,12 +15,8 @@ const OF_THE_CELL: (&str, f64) = (
 );
 
 fn model(builtin: &Builtin) -> Model {
-    let study = Study::parse(builtin.text, builtin.name).expect("a study that comes with the program");
+    let study = builtin.study().expect("a valid study");
     PreparedStudy::new(study).expect("grids that fit").model().clone()
-}
-
-fn builtin(name: &str) -> Builtin {
-    Builtin::find(name).expect("a study that comes with the program")
 }
 
 fn on_threads<T: Send>(count: usize, of: impl FnOnce() -> T + Send) -> T {
