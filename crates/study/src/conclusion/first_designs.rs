@@ -11,9 +11,9 @@ use rayon::prelude::*;
 use super::gaps::objectives;
 use super::proofs::Held;
 use super::{Keep, Settling};
+use crate::TableRow;
 use crate::local::Aim;
 use crate::search::FIRST_DESIGNS;
-use crate::{Event, RunTimes, TableRow};
 
 /// Number of evaluations of the search for which one of its first designs is followed, so that a short search has a short end.
 const EVALUATIONS: usize = 200;
@@ -27,7 +27,7 @@ const OF_EACH: usize = 3;
 impl Settling<'_> {
     /// Verifies the optima near the first designs of a search with two or three objectives that add something to its front, and those of
     /// other architectures, also for the values at its end in the first objective; `None` if the run was abandoned.
-    pub(super) fn follow_first_designs(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+    pub(super) fn follow_first_designs(&mut self) -> Option<()> {
         let standing = self.standing();
         let adds = self.adds_to(&standing, FAMILY);
         let points = objectives(&standing);
@@ -46,13 +46,13 @@ impl Settling<'_> {
             let near = problem.evaluate_design(&entry.row.design);
             problem.verify_toward(&near, aim).filter(&adds)
         };
-        self.verify(&starts, optimum, Keep::Proved, times, send)
+        self.verify(&starts, optimum, Keep::Proved)
     }
 
     /// Verifies the designs of a search with one objective near which there is a better optimum than what holds: its first ones, and the
     /// best one of each other architecture, because a search that has settled on one leaves the others far from their optima. Returns `None`
     /// if the run was abandoned.
-    pub(super) fn settle_promising(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+    pub(super) fn settle_promising(&mut self) -> Option<()> {
         let verifying = Instant::now();
         let (control, problem) = (self.control, &self.search.problem);
         let mut others = self.search.found.best_of_other_architectures();
@@ -62,7 +62,7 @@ impl Settling<'_> {
             is_wanted.then(|| problem.objective_near(&entry.row.design)).flatten()
         };
         let promises: Vec<Option<f64>> = self.search.pool.install(|| others.par_iter().map(promise).collect());
-        times.verification_s += verifying.elapsed().as_secs_f64();
+        self.times.verification_s += verifying.elapsed().as_secs_f64();
         if control.is_abandoned() {
             return None;
         }
@@ -76,7 +76,7 @@ impl Settling<'_> {
                 break;
             }
             let place = self.add(&entry);
-            self.settle(&[place], times, send)?;
+            self.settle(&[place])?;
         }
         Some(())
     }

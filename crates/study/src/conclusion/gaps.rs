@@ -1,11 +1,11 @@
 //! Gaps of the front that is reported: designs between two neighbours, and at the ends.
 
-use kinefront_model::evaluation::{Better, Evaluation, Quantity};
+use kinefront_model::evaluation::{Evaluation, Quantity};
 use kinefront_optimize::{Archive, Objectives, added_share, gaps, halfway};
 
 use super::{Keep, Settling};
+use crate::DesignProblem;
 use crate::local::Aim;
-use crate::{DesignProblem, Event, RunTimes};
 
 /// Largest number of gaps that are filled before they are looked for again.
 const AT_ONCE: usize = 16;
@@ -54,7 +54,7 @@ impl Settling<'_> {
     /// gap there is an optimum, from which another one with a value in the gap is a short way. Where no gap is left, families of designs are
     /// followed across the boundaries between them, which may leave further gaps. No more designs are looked for than are
     /// reported, and no more than a third of the evaluations, even if gaps are filled several times.
-    pub(super) fn fill_gaps(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+    pub(super) fn fill_gaps(&mut self) -> Option<()> {
         let most = self.most_wanted();
         let mut sought = std::mem::take(&mut self.sought);
         sought.at_ends.resize(self.search.found.reference.len(), None);
@@ -72,7 +72,7 @@ impl Settling<'_> {
             if wanted.is_empty() {
                 break;
             }
-            self.verify_wanted(&standing, wanted, times, send)?;
+            self.verify_wanted(&standing, wanted)?;
         }
         self.sought = sought;
         Some(())
@@ -86,13 +86,7 @@ impl Settling<'_> {
 
     /// Verifies the optima for some aims, each with the design to start from as a place in `held`, and keeps those that add something to the
     /// front; `None` if the run was abandoned.
-    pub(super) fn verify_wanted(
-        &mut self,
-        standing: &Archive,
-        wanted: Vec<(usize, Aim)>,
-        times: &mut RunTimes,
-        send: &mut dyn FnMut(Event),
-    ) -> Option<()> {
+    pub(super) fn verify_wanted(&mut self, standing: &Archive, wanted: Vec<(usize, Aim)>) -> Option<()> {
         let start = |(near, aim): (usize, Aim)| {
             let held = &self.held[near];
             Some((held.place, (held.reported()?.evaluation.clone(), aim)))
@@ -101,7 +95,7 @@ impl Settling<'_> {
         let adds = self.adds_to(standing, KEPT);
         let problem = &self.search.problem;
         let verify = |(near, aim): &(Evaluation, Aim)| problem.verify_toward(near, aim).filter(&adds);
-        self.verify(&starts, verify, Keep::Proved, times, send)
+        self.verify(&starts, verify, Keep::Proved)
     }
 
     /// Returns whether a design adds more to the front that stands than `least` designs of a mean share, as a function of its evaluation.
@@ -191,14 +185,10 @@ impl Settling<'_> {
         let objectives = &self.search.problem.model().settings().objectives;
         let held = objectives.iter().zip(minimised.iter()).enumerate();
         let held = held.filter(|(place, _)| *place != improved);
-        let value = |goal: Better, minimised: f64| match goal {
-            Better::Lower => minimised,
-            Better::Higher => -minimised,
-        };
         Aim {
             improved,
             held: held
-                .map(|(_, (objective, minimised))| (objective.quantity, value(objective.goal, *minimised)))
+                .map(|(_, (objective, minimised))| (objective.quantity, objective.value(*minimised)))
                 .collect(),
             keeps_entries: false,
         }

@@ -18,7 +18,7 @@ use gaps::Sought;
 use proofs::Held;
 
 use super::prove::proved_front;
-use super::search::{Found, StudySearch};
+use super::search::StudySearch;
 use super::{
     ConclusionPart, DesignProblem, EndReason, Event, FrontMember, FrontProofs, RunControl, RunSummary, RunTimes,
     TableRow,
@@ -44,22 +44,21 @@ pub(super) fn verify_replayed(mut search: StudySearch, outcome: EndReason) -> Op
 /// Selects, verifies and proves the designs to be reported of a search that has ended, and sums it up; `None` if the run was
 /// abandoned.
 pub(super) fn conclude(
-    mut search: StudySearch,
+    search: StudySearch,
     outcome: EndReason,
     control: &RunControl,
     send: &mut dyn FnMut(Event),
 ) -> Option<RunSummary> {
-    let interrupted = |search| Some(summary(search, EndReason::Interrupted, Reported::default()));
+    let nothing = Reported {
+        times: search.times,
+        ..Reported::default()
+    };
     if outcome == EndReason::Interrupted {
-        return interrupted(search);
+        return Some(summary(search, outcome, nothing));
     }
-    let mut times = search.times;
-    match Settling::new(&search, control).run(&mut times, send) {
-        Some(reported) => {
-            search.times = times;
-            Some(summary(search, outcome, reported))
-        }
-        None if control.is_interrupted() => interrupted(search),
+    match Settling::new(&search, control, send).run() {
+        Some(reported) => Some(summary(search, outcome, reported)),
+        None if control.is_interrupted() => Some(summary(search, EndReason::Interrupted, nothing)),
         None => None,
     }
 }
@@ -76,25 +75,20 @@ struct Reported {
     /// The designs that are reported.
     front: Vec<FrontMember>,
     proofs: Option<FrontProofs>,
+    times: RunTimes,
 }
 
 fn summary(search: StudySearch, outcome: EndReason, reported: Reported) -> RunSummary {
-    let threads = search.threads();
-    let StudySearch {
-        found: Found { history, .. },
-        times,
-        ..
-    } = search;
     RunSummary {
         outcome,
-        threads,
-        history,
+        threads: search.threads(),
+        history: search.found.history,
         dropped: reported.dropped,
         verified_hypervolume: reported.hypervolume,
         verified: reported.verified,
         front: reported.front,
         proofs: reported.proofs,
-        times,
+        times: reported.times,
     }
 }
 
@@ -111,6 +105,8 @@ enum Keep {
 struct Settling<'a> {
     search: &'a StudySearch,
     control: &'a RunControl,
+    send: &'a mut dyn FnMut(Event),
+    times: RunTimes,
     /// The front of the search; with one objective, the best design and its runners-up. Designs beside the front come after these.
     candidates: Vec<Arc<TableRow>>,
     /// The objectives of the front of the search, scaled.
@@ -128,12 +124,14 @@ struct Settling<'a> {
 }
 
 impl<'a> Settling<'a> {
-    fn new(search: &'a StudySearch, control: &'a RunControl) -> Self {
+    fn new(search: &'a StudySearch, control: &'a RunControl, send: &'a mut dyn FnMut(Event)) -> Self {
         let candidates = search.found.candidates();
         let objectives: Vec<Objectives> = candidates.iter().map(|entry| entry.row.objectives).collect();
         Self {
             search,
             control,
+            send,
+            times: search.times,
             is_tried: vec![false; candidates.len()],
             points: scaled(&objectives),
             candidates,
@@ -147,26 +145,26 @@ impl<'a> Settling<'a> {
     }
 
     /// Settles which designs are reported; `None` if the run was abandoned.
-    fn run(mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<Reported> {
+    fn run(mut self) -> Option<Reported> {
         if self.has_one_objective() {
-            self.settle_best(times, send)?;
-            self.settle_promising(times, send)?;
+            self.settle_best()?;
+            self.settle_promising()?;
         } else {
             let objectives: Vec<Objectives> = self.candidates.iter().map(|entry| entry.row.objectives).collect();
             let chosen = subset(&objectives, &self.search.found.reference, self.most());
             let wanted = chosen.len();
-            self.settle(&chosen, times, send)?;
+            self.settle(&chosen)?;
             for round in 0..ROUNDS {
                 let replacements = self.replacements(wanted, round);
                 if replacements.is_empty() {
                     break;
                 }
-                self.settle(&replacements, times, send)?;
+                self.settle(&replacements)?;
             }
-            self.follow_first_designs(times, send)?;
-            self.fill_gaps(times, send)?;
+            self.follow_first_designs()?;
+            self.fill_gaps()?;
         }
-        self.prove_reported(times, send)?;
+        self.prove_reported()?;
         Some(self.reported())
     }
 
@@ -181,7 +179,7 @@ impl<'a> Settling<'a> {
 
     /// Verifies the best designs that were not tried, one after the other, until one holds and those that are left promise hardly more. Once
     /// one holds, only a few more are tried: on the fine grid, all become worse alike.
-    fn settle_best(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+    fn settle_best(&mut self) -> Option<()> {
         /// Relative gain for which no other design is tried.
         const HARDLY: f64 = 1e-5;
         const MORE: usize = 3;
@@ -199,18 +197,18 @@ impl<'a> Settling<'a> {
             if since_held > MORE || held.any(|member| member.objectives()[0] <= enough) {
                 break;
             }
-            self.settle(&[place], times, send)?;
+            self.settle(&[place])?;
         }
         Some(())
     }
 
     /// Verifies some candidates; `None` if the run was abandoned.
-    fn settle(&mut self, places: &[usize], times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+    fn settle(&mut self, places: &[usize]) -> Option<()> {
         let problem = &self.search.problem;
         let design = |&place: &usize| (place, self.candidates[place].row.design);
         let designs: Vec<(usize, Design)> = places.iter().map(design).collect();
         let verify = |design: &Design| Some(problem.verify_improved(design));
-        self.verify(&designs, verify, Keep::All, times, send)?;
+        self.verify(&designs, verify, Keep::All)?;
         places.iter().for_each(|&place| self.is_tried[place] = true);
         Some(())
     }
@@ -222,8 +220,6 @@ impl<'a> Settling<'a> {
         tasks: &[(usize, T)],
         verify: impl Fn(&T) -> Option<Evaluation> + Sync,
         keep: Keep,
-        times: &mut RunTimes,
-        send: &mut dyn FnMut(Event),
     ) -> Option<()> {
         if tasks.is_empty() {
             return Some(());
@@ -232,13 +228,13 @@ impl<'a> Settling<'a> {
         self.planned += tasks.len();
         let (before, total) = (self.tried, self.planned);
         let tell = |done| {
-            send(Event::Concluding {
+            (self.send)(Event::Concluding {
                 part: ConclusionPart::Verification,
                 done: before + done,
                 total,
             });
         };
-        let evaluations = self.each(tasks, |(_, task)| verify(task), tell)?;
+        let evaluations = each(self.search, self.control, tasks, |(_, task)| verify(task), tell)?;
         self.tried += tasks.len();
         for ((place, _), evaluation) in tasks.iter().zip(evaluations) {
             let member = evaluation.filter(Evaluation::is_feasible);
@@ -249,39 +245,8 @@ impl<'a> Settling<'a> {
                 None => {}
             }
         }
-        times.verification_s += verifying.elapsed().as_secs_f64();
+        self.times.verification_s += verifying.elapsed().as_secs_f64();
         Some(())
-    }
-
-    /// Does some tasks on the threads of the search, and tells how many are done after each, beginning with 0; returns the results in the order
-    /// of the tasks, or `None` if the run was abandoned.
-    fn each<T: Sync, R: Send>(
-        &self,
-        tasks: &[T],
-        work: impl Fn(&T) -> R + Sync,
-        mut tell: impl FnMut(usize),
-    ) -> Option<Vec<R>> {
-        let goes_on = || !self.control.is_abandoned();
-        let mut results: Vec<Option<R>> = tasks.iter().map(|_| None).collect();
-        tell(0);
-        self.search.pool.in_place_scope(|scope| {
-            let (sender, received) = mpsc::channel();
-            // A task takes up to seconds, so that each is given to a thread by itself.
-            let tasks = tasks.par_iter().enumerate().with_max_len(1);
-            scope.spawn(|_| {
-                tasks.for_each_with(sender, |sender, (place, task)| {
-                    if goes_on() {
-                        // The receiver lives until all senders are gone.
-                        let _ = sender.send((place, work(task)));
-                    }
-                });
-            });
-            for (done, (place, result)) in received.into_iter().enumerate() {
-                results[place] = Some(result);
-                tell(done + 1);
-            }
-        });
-        results.into_iter().collect::<Option<_>>().filter(|_| goes_on())
     }
 
     /// Returns whether a design has the same objectives as one that holds, up to what no table shows: neighbours that are improved can end
@@ -374,6 +339,39 @@ impl<'a> Settling<'a> {
             hypervolume: whole,
             front,
             proofs: self.search.study().workspace.certify.then_some(proofs),
+            times: self.times,
         }
     }
+}
+
+/// Does some tasks on the threads of the search, and tells how many are done after each, beginning with 0; returns the results in the order
+/// of the tasks, or `None` if the run was abandoned.
+fn each<T: Sync, R: Send>(
+    search: &StudySearch,
+    control: &RunControl,
+    tasks: &[T],
+    work: impl Fn(&T) -> R + Sync,
+    mut tell: impl FnMut(usize),
+) -> Option<Vec<R>> {
+    let goes_on = || !control.is_abandoned();
+    let mut results: Vec<Option<R>> = tasks.iter().map(|_| None).collect();
+    tell(0);
+    search.pool.in_place_scope(|scope| {
+        let (sender, received) = mpsc::channel();
+        // A task takes up to seconds, so that each is given to a thread by itself.
+        let tasks = tasks.par_iter().enumerate().with_max_len(1);
+        scope.spawn(|_| {
+            tasks.for_each_with(sender, |sender, (place, task)| {
+                if goes_on() {
+                    // The receiver lives until all senders are gone.
+                    let _ = sender.send((place, work(task)));
+                }
+            });
+        });
+        for (done, (place, result)) in received.into_iter().enumerate() {
+            results[place] = Some(result);
+            tell(done + 1);
+        }
+    });
+    results.into_iter().collect::<Option<_>>().filter(|_| goes_on())
 }

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use super::{Keep, ROUNDS, Settling};
+use super::{Keep, ROUNDS, Settling, each};
 use crate::prove::{FrontProver, ProvedMember, selected};
-use crate::{ConclusionPart, Event, FrontMember, RunTimes};
+use crate::{ConclusionPart, Event, FrontMember};
 
 /// A design that holds on the fine grid.
 pub(super) struct Held {
@@ -45,7 +45,7 @@ impl Held {
 impl Settling<'_> {
     /// Proves the designs that would be reported, and replaces those that fall, until all that are reported have been examined; `None` if the
     /// run was abandoned.
-    pub(super) fn prove_reported(&mut self, times: &mut RunTimes, send: &mut dyn FnMut(Event)) -> Option<()> {
+    pub(super) fn prove_reported(&mut self) -> Option<()> {
         if !self.search.study().workspace.certify {
             return Some(());
         }
@@ -57,10 +57,10 @@ impl Settling<'_> {
             if unproved.is_empty() {
                 break;
             }
-            self.prove(&unproved, examined, times, send)?;
+            self.prove(&unproved, examined)?;
             examined += unproved.len();
             if round < ROUNDS {
-                self.replace_fallen(chosen.len(), round, times, send)?;
+                self.replace_fallen(chosen.len(), round)?;
             }
         }
         Some(())
@@ -72,49 +72,43 @@ impl Settling<'_> {
     }
 
     /// Proves some designs, as places in `held`, after others that were `examined`.
-    fn prove(
-        &mut self,
-        unproved: &[usize],
-        examined: usize,
-        times: &mut RunTimes,
-        send: &mut dyn FnMut(Event),
-    ) -> Option<()> {
+    fn prove(&mut self, unproved: &[usize], examined: usize) -> Option<()> {
         let proving = Instant::now();
         let control = self.control;
         let goes_on = || !control.is_abandoned();
         let prover = FrontProver::new(&self.search.problem, &goes_on);
         let tell = |done| {
-            send(Event::Concluding {
+            (self.send)(Event::Concluding {
                 part: ConclusionPart::Proofs,
                 done: examined + done,
                 total: examined + unproved.len(),
             });
         };
-        let proved = self.each(unproved, |&place| prover.prove(self.held[place].proved.member()), tell)?;
+        let proved = each(
+            self.search,
+            control,
+            unproved,
+            |&place| prover.prove(self.held[place].proved.member()),
+            tell,
+        )?;
         for (&place, proved) in unproved.iter().zip(proved) {
             let held = &mut self.held[place];
             (held.proved, held.is_examined) = (proved, true);
             self.in_vain += usize::from(held.is_left_out());
         }
-        times.certification_s += proving.elapsed().as_secs_f64();
+        self.times.certification_s += proving.elapsed().as_secs_f64();
         Some(())
     }
 
     /// Verifies other designs in place of those that fell, so that as many stand as were `wanted`, and fills the gaps that are left.
-    fn replace_fallen(
-        &mut self,
-        wanted: usize,
-        round: usize,
-        times: &mut RunTimes,
-        send: &mut dyn FnMut(Event),
-    ) -> Option<()> {
+    fn replace_fallen(&mut self, wanted: usize, round: usize) -> Option<()> {
         if !self.has_one_objective() {
             let replacements = self.replacements(wanted, round);
-            self.settle(&replacements, times, send)?;
-            return self.fill_gaps(times, send);
+            self.settle(&replacements)?;
+            return self.fill_gaps();
         }
         match self.standing().is_empty() {
-            true => self.settle_best(times, send),
+            true => self.settle_best(),
             false => Some(()),
         }
     }

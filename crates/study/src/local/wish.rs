@@ -249,13 +249,7 @@ impl DesignProblem {
 
     /// Proves a design that was evaluated on the fine grid.
     fn proved(&self, evaluation: Evaluation) -> FrontMember {
-        let member = FrontMember {
-            id: 0,
-            generation: 0,
-            reference_radius: evaluation.workspace_radius(),
-            evaluation,
-            certified: None,
-        };
+        let member = FrontMember::of(0, evaluation);
         let prover = FrontProver::at_once(self, &PoolWorkers);
         prover.prove(&member).reported().cloned().unwrap_or(member)
     }

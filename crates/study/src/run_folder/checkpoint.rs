@@ -1,12 +1,9 @@
 //! Contents of `progress.json`, which stands beside the files of a run that has not ended.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
-use super::{MergedRun, PROGRESS};
+use super::MergedRun;
 use crate::FileSum;
-use crate::{WriteError, write_whole};
 
 /// Contents of `progress.json`: what was on the disk at the last checkpoint of a run in progress. The file is removed
 /// once all files of the run are complete.
@@ -23,14 +20,4 @@ pub struct Checkpoint {
     /// The runs whose designs the folder holds; absent for a folder of one run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub merged: Vec<MergedRun>,
-}
-
-impl Checkpoint {
-    /// Replaces the checkpoint of a run folder.
-    pub(super) fn write(&self, folder: &Path) -> Result<(), WriteError> {
-        let path = folder.join(PROGRESS);
-        let mut text = serde_json::to_vec_pretty(self).map_err(|error| WriteError::at(&path)(error.into()))?;
-        text.push(b'\n');
-        write_whole(&path, &text)
-    }
 }

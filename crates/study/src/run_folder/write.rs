@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
+
 use super::design_table::DesignTable;
 use super::lock::open_locked;
 use super::{Checkpoint, DESIGNS, FRONT, FileSums, MergedRun, PROGRESS, RECORDING, REPORT, RunReport, STUDY};
@@ -174,10 +176,7 @@ impl RunWriter {
             merged: self.merged.clone(),
             ..RunReport::new(&self.study, summary)
         };
-        let path = self.path.join(REPORT);
-        let mut text = serde_json::to_vec_pretty(&report).map_err(|error| WriteError::at(&path)(error.into()))?;
-        text.push(b'\n');
-        write_whole(&path, &text)
+        write_json(&self.path.join(REPORT), &report)
     }
 
     /// Removes `progress.json`, which marks the run as ended: all its files are complete.
@@ -207,8 +206,15 @@ impl RunWriter {
             designs: self.table.sum,
             merged: self.merged.clone(),
         };
-        checkpoint.write(&self.path)
+        write_json(&self.path.join(PROGRESS), &checkpoint)
     }
+}
+
+/// Writes a JSON file with an end of its last line.
+fn write_json(path: &Path, contents: &impl Serialize) -> Result<(), WriteError> {
+    let mut text = serde_json::to_vec_pretty(contents).map_err(|error| WriteError::at(path)(error.into()))?;
+    text.push(b'\n');
+    write_whole(path, &text)
 }
 
 /// Returns the verified front as a table.

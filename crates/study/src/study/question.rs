@@ -141,11 +141,7 @@ impl Study {
         let [objective] = self.objectives()[..] else {
             return None;
         };
-        let minimised = self.hypervolume_reference()[0] - hypervolume;
-        let value = match objective.goal {
-            Better::Lower => minimised,
-            Better::Higher => -minimised,
-        };
+        let value = objective.value(self.hypervolume_reference()[0] - hypervolume);
         (hypervolume > 0.0).then_some((objective, value))
     }
 
