@@ -180,10 +180,7 @@ struct Search {
 
 impl Search {
     fn new(study: &Study, architecture: Architecture) -> Self {
-        let study = Study {
-            architectures: vec![architecture],
-            ..study.clone()
-        };
+        let study = study.with_one_architecture(architecture);
         let ranges = DESIGN_VARIABLES.map(|variable| study.bounds.range(variable));
         Self {
             model: study.model().expect("a valid study"),
@@ -211,9 +208,9 @@ impl Search {
         self.long_runs(front);
         keep(front, "after long runs");
         for round in 0..2 {
-            self.ladder(front, round);
+            self.ladder(front, round, |known, level, seed| self.step(known, level, seed));
             keep(front, "after the ladder");
-            self.strategy(front, round);
+            self.ladder(front, round, |known, level, seed| self.shrink(known, level, seed));
             keep(front, "after the evolution strategy");
         }
     }
@@ -271,13 +268,19 @@ impl Search {
             .collect()
     }
 
-    fn ladder(&self, front: &mut Front, round: usize) {
+    /// Minimises the mass at each radius, in parallel, by a function of the known designs, the radius and a random seed.
+    fn ladder(
+        &self,
+        front: &mut Front,
+        round: usize,
+        minimise: impl Fn(&[(Design, Objectives)], f64, u64) -> Vec<Evaluation> + Sync,
+    ) {
         let known = front.designs(&self.study);
         let found: Vec<Vec<Evaluation>> = self
             .levels(front, round)
             .into_par_iter()
             .enumerate()
-            .map(|(k, level)| self.step(&known, level, (round * LADDER + k) as u64))
+            .map(|(k, level)| minimise(&known, level, (round * LADDER + k) as u64))
             .collect();
         found.iter().flatten().for_each(|evaluation| front.take(evaluation));
     }
@@ -337,25 +340,13 @@ impl Search {
         mass
     }
 
-    fn strategy(&self, front: &mut Front, round: usize) {
-        let known = front.designs(&self.study);
-        let levels = self.levels(front, round);
-        let found: Vec<Vec<Evaluation>> = levels
-            .into_par_iter()
-            .enumerate()
-            .map(|(k, level)| {
-                let start = known.iter().find(|(_, objectives)| -objectives[1] >= level);
-                start.map_or(Vec::new(), |(design, objectives)| {
-                    self.shrink(*design, objectives[0], level, (round * LADDER + k) as u64)
-                })
-            })
-            .collect();
-        found.iter().flatten().for_each(|evaluation| front.take(evaluation));
-    }
-
     /// Minimises the mass at one radius by a (1+1) evolution strategy with Rechenberg's one-fifth rule on all five
     /// lengths.
-    fn shrink(&self, mut design: Design, mut mass: f64, level: f64, seed: u64) -> Vec<Evaluation> {
+    fn shrink(&self, known: &[(Design, Objectives)], level: f64, seed: u64) -> Vec<Evaluation> {
+        let start = known.iter().find(|(_, objectives)| -objectives[1] >= level);
+        let Some((mut design, mut mass)) = start.map(|(design, objectives)| (*design, objectives[0])) else {
+            return Vec::new();
+        };
         let mut random = ChaCha8Rng::seed_from_u64(9000 + seed);
         let mut met = Vec::new();
         let mut width = 0.01;

@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use super::search::outcome;
 use super::{Cell, Column, DesignProblem, EndReason, Row, SearchError, Study, StudySearch, TableRow};
 use kinefront_optimize::Evaluated;
 
@@ -100,7 +99,7 @@ impl StudySearch {
             candidates.truncate(count);
             let evaluated = whole.iter().zip(candidates).map(|(entry, candidate)| Evaluated {
                 x: DesignProblem::values(&candidate, &entry.row.design),
-                outcome: outcome(&entry.row),
+                outcome: entry.row.outcome(),
             });
             search.algorithm.tell(evaluated.collect());
             start += count;

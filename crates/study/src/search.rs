@@ -14,7 +14,7 @@ use super::{
 use kinefront_model::mechanism::DesignError;
 use kinefront_model::workspace::GridError;
 use kinefront_optimize::{
-    Algorithm, Archive, Candidate, CmaEs, Evaluated, FrontDe, Moga2, Nsga2, Objectives, Outcome, hypervolume,
+    Algorithm, Archive, Candidate, CmaEs, Evaluated, FrontDe, Moga2, Nsga2, Objectives, hypervolume,
 };
 
 /// Why a search fails; a study that was read without faults gives no cause but the threads.
@@ -183,7 +183,7 @@ impl StudySearch {
         let telling = Instant::now();
         let evaluated = values.into_iter().zip(&rows).map(|(x, row)| Evaluated {
             x,
-            outcome: outcome(row),
+            outcome: row.outcome(),
         });
         self.algorithm.tell(evaluated.collect());
         self.times.optimizer_s += telling.elapsed().as_secs_f64();
@@ -250,7 +250,7 @@ impl Found {
         let mut front_changed = false;
         for (id, row) in (first_id..).zip(&rows) {
             self.feasible += usize::from(row.is_feasible());
-            front_changed |= self.archive.insert(id, &[], &outcome(row));
+            front_changed |= self.archive.insert(id, &[], &row.outcome());
         }
         if front_changed {
             self.update_front(first_id, &rows);
@@ -370,14 +370,6 @@ pub fn keep_runners_up<T>(designs: &mut Vec<T>, objective: impl Fn(&T) -> f64) {
         is_kept
     });
     designs.truncate(RUNNERS_UP);
-}
-
-/// The outcome that a row states.
-pub(super) fn outcome(row: &Row) -> Outcome {
-    Outcome {
-        objectives: row.objectives,
-        violation: row.violation,
-    }
 }
 
 fn algorithm(study: &Study, problem: &DesignProblem) -> Box<dyn Algorithm> {

@@ -26,14 +26,21 @@ pub struct Alternative {
 }
 
 impl Alternative {
+    /// An alternative that changes only the random seed.
+    const fn of_seed(name: &'static str, change: fn(&mut Study)) -> Self {
+        Self {
+            name,
+            meaning: "only the random seed of the search",
+            effect: Effect::Chance,
+            change,
+        }
+    }
+
     /// Whether only the random seed differs, so that all differences are due to chance.
     pub fn is_chance(&self) -> bool {
         self.effect == Effect::Chance
     }
 }
-
-/// Meaning of the alternatives that change only the random seed.
-const SEED: &str = "only the random seed of the search";
 
 /// Name of the alternative in which members must keep a clearance.
 pub const CLEAR: &str = "5 mm clearance";
@@ -148,24 +155,9 @@ pub const ALTERNATIVES: [Alternative; 15] = [
         effect: Effect::Evaluation,
         change: |study| study.requirements.clearance_min_m = None,
     },
-    Alternative {
-        name: "seed + 1",
-        meaning: SEED,
-        effect: Effect::Chance,
-        change: |study| study.optimizer.seed += 1,
-    },
-    Alternative {
-        name: "seed + 2",
-        meaning: SEED,
-        effect: Effect::Chance,
-        change: |study| study.optimizer.seed += 2,
-    },
-    Alternative {
-        name: "seed + 3",
-        meaning: SEED,
-        effect: Effect::Chance,
-        change: |study| study.optimizer.seed += 3,
-    },
+    Alternative::of_seed("seed + 1", |study| study.optimizer.seed += 1),
+    Alternative::of_seed("seed + 2", |study| study.optimizer.seed += 2),
+    Alternative::of_seed("seed + 3", |study| study.optimizer.seed += 3),
 ];
 
 /// Returns the study as given, without an alternative, and the study under each alternative that changes it and leaves it valid. Each

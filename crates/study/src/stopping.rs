@@ -52,19 +52,15 @@ mod tests {
             .collect()
     }
 
-    fn rule(time_limit: Option<f64>, stagnation: Option<Stagnation>) -> Stopping {
-        Stopping { time_limit, stagnation }
-    }
-
     #[test]
     fn stagnation_is_too_little_gain_over_the_evaluations_given() {
-        let rule = rule(
-            None,
-            Some(Stagnation {
+        let rule = Stopping {
+            time_limit: None,
+            stagnation: Some(Stagnation {
                 evaluations: 60,
                 gain: 0.01,
             }),
-        );
+        };
         let reason = |hypervolumes: &[f64]| rule.reason(Duration::ZERO, &history(hypervolumes));
         assert_eq!(
             reason(&[100.0, 100.0]),
@@ -78,7 +74,10 @@ mod tests {
 
     #[test]
     fn the_time_limit_is_looked_at_after_a_generation() {
-        let rule = rule(Some(2.0), None);
+        let rule = Stopping {
+            time_limit: Some(2.0),
+            stagnation: None,
+        };
         assert_eq!(rule.reason(Duration::from_secs(1), &history(&[1.0])), None);
         assert_eq!(
             rule.reason(Duration::from_secs(2), &history(&[1.0])),

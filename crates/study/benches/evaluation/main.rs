@@ -40,10 +40,7 @@ use self::proofs::proofs;
 
 /// Returns designs of one architecture, spread over the paper's bounds.
 fn sample(architecture: Architecture, count: usize) -> Vec<Design> {
-    let study = Study {
-        architectures: vec![architecture],
-        ..Study::default()
-    };
+    let study = Study::default().with_one_architecture(architecture);
     let problem = DesignProblem::new(&study).expect("a valid study");
     let sample = sobol(&problem.variables(), count, 1);
     sample.iter().map(|x| problem.design(x).expect("a design")).collect()
@@ -274,10 +271,7 @@ fn clearance(criterion: &mut Criterion) {
             ("5 mm", Some(0.005), Layers::default()),
             ("5 mm, in one plane", Some(0.005), Layers::ONE_PLANE),
         ] {
-            let mut study = Study {
-                architectures: vec![architecture],
-                ..Study::default()
-            };
+            let mut study = Study::default().with_one_architecture(architecture);
             study.requirements.clearance_min_m = least;
             study.bodies.layers = layers;
             let problem = DesignProblem::new(&study).expect("a valid study");

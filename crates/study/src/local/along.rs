@@ -106,8 +106,6 @@ impl DesignProblem {
         }
         for front in &mut fronts {
             front.designs.sort_by(|a, b| a.1.total_cmp(&b.1));
-        }
-        for front in &mut fronts {
             let own = crossings.iter().filter(|crossing| crossing.is_of(front.architecture));
             front.crossings.extend(own);
         }
@@ -163,8 +161,11 @@ impl DriversAlong {
                 && odd.prices.len() == 1
                 && before.label == after.label
             {
-                let mut joined = before.clone();
-                joined.join(after);
+                let joined = DrivenPart {
+                    label: before.label.clone(),
+                    range: [before.range[0], after.range[1]],
+                    prices: [&*before.prices, &after.prices].concat(),
+                };
                 parts.truncate(parts.len() - 3);
                 parts.push(joined);
             }
@@ -354,11 +355,6 @@ impl DrivenPart {
     fn grow(&mut self, at: f64, price: f64) {
         self.range[1] = at;
         self.prices.push(price);
-    }
-
-    fn join(&mut self, other: &Self) {
-        self.range[1] = other.range[1];
-        self.prices.extend(&other.prices);
     }
 
     /// Returns the median of the prices.

@@ -68,15 +68,11 @@ impl DesignProblem {
             .map(|evaluation| (distance(&evaluation), evaluation))
             .collect();
         evaluated.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let of = |architecture: &Architecture| {
-            let architecture = *architecture;
-            let own = evaluated
-                .iter()
-                .filter(move |(_, evaluation)| evaluation.design.architecture() == architecture);
-            own.take(NEAREST)
-                .map(|(_, evaluation)| evaluation.clone())
-                .collect::<Vec<_>>()
+        let of = |architecture: &'static Architecture| {
+            let own = evaluated.iter().map(|(_, evaluation)| evaluation);
+            own.filter(|evaluation| evaluation.design.architecture() == *architecture)
+                .take(NEAREST)
         };
-        Architecture::ALL.iter().flat_map(of).collect()
+        Architecture::ALL.iter().flat_map(of).cloned().collect()
     }
 }

@@ -8,7 +8,7 @@ use super::DESIGNS;
 use super::lock::is_same_file;
 use crate::FileSum;
 use crate::sum::checksum;
-use crate::table::{Column, append_row, table_bytes};
+use crate::table::{Column, TableRow, rows_as_csv, table_bytes};
 use crate::{Batch, Study};
 use crate::{WriteError, read_regular};
 
@@ -73,14 +73,8 @@ impl DesignTable {
     }
 
     pub(super) fn append(&mut self, batch: &Batch) -> Result<(), WriteError> {
-        let text = || -> io::Result<Vec<u8>> {
-            let mut table = csv::Writer::from_writer(Vec::new());
-            for entry in batch.entries() {
-                append_row(&mut table, self.columns.iter().map(|column| column.cell(&entry)))?;
-            }
-            table.into_inner().map_err(|error| error.into_error())
-        };
-        let text = text().map_err(WriteError::at(&self.path))?;
+        let cells = |entry: TableRow| self.columns.iter().map(|column| column.cell(&entry)).collect();
+        let text = rows_as_csv(batch.entries().map(cells)).map_err(WriteError::at(&self.path))?;
         self.append_bytes(&text, batch.rows.len())
     }
 

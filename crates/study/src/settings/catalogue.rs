@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::declare::wrong_name;
-use crate::read_regular;
+use crate::durable::{or_here, read_regular};
 use kinefront_model::dynamics::DriveCatalogueError;
 use kinefront_model::mechanism::CatalogueError;
 
@@ -203,12 +203,8 @@ fn read_rows<Item: CatalogueItem>(folder: &Path, name: &str, scope: FileScope) -
     };
     let path = folder.join(name);
     if scope == FileScope::BesideStudy {
-        let folder = match folder.as_os_str().is_empty() {
-            true => Path::new("."),
-            false => folder,
-        };
         // A link may lead out of the folder.
-        let [folder, file] = [folder, &path].map(|path| path.canonicalize().map_err(unreadable));
+        let [folder, file] = [or_here(folder), &path].map(|path| path.canonicalize().map_err(unreadable));
         if !file?.starts_with(folder?) {
             return Err(CatalogueFault::Outside);
         }

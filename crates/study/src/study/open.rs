@@ -8,34 +8,31 @@ impl Study {
     pub fn open_points(&self) -> Vec<String> {
         let thresholds = self.thresholds();
         let limits = |scalar: PoseScalar| thresholds.get(scalar).is_some();
-        let mut points = Vec::new();
-        let mut add = |is_open: bool, point: String| {
-            if is_open {
-                points.push(point);
-            }
-        };
-        add(
-            !limits(PoseScalar::Clearance),
-            "members may collide; requirements.clearance_min_m requires a clearance".to_owned(),
-        );
-        add(
-            !limits(PoseScalar::Stress) && !limits(PoseScalar::SafetyFactor),
-            "nothing limits the stress; constraints.safety_factor_min does, with material.yield_strength_pa".to_owned(),
-        );
-        add(
-            !limits(PoseScalar::BucklingFactor),
-            "nothing limits buckling; constraints.buckling_factor_min does".to_owned(),
-        );
         let joints = &self.joints;
-        add(
-            [joints.revolute_kg, joints.carriage_kg, joints.motor_kg] == [0.0; 3],
-            "joints and motors have no mass; [joints] gives them one".to_owned(),
-        );
-        add(
-            !self.workspace.certify,
-            "nothing is proved; workspace.certify = true proves the reported designs".to_owned(),
-        );
-        points
+        let points = [
+            (
+                !limits(PoseScalar::Clearance),
+                "members may collide; requirements.clearance_min_m requires a clearance",
+            ),
+            (
+                !limits(PoseScalar::Stress) && !limits(PoseScalar::SafetyFactor),
+                "nothing limits the stress; constraints.safety_factor_min does, with material.yield_strength_pa",
+            ),
+            (
+                !limits(PoseScalar::BucklingFactor),
+                "nothing limits buckling; constraints.buckling_factor_min does",
+            ),
+            (
+                [joints.revolute_kg, joints.carriage_kg, joints.motor_kg] == [0.0; 3],
+                "joints and motors have no mass; [joints] gives them one",
+            ),
+            (
+                !self.workspace.certify,
+                "nothing is proved; workspace.certify = true proves the reported designs",
+            ),
+        ];
+        let open = points.into_iter().filter(|(is_open, _)| *is_open);
+        open.map(|(_, point)| point.to_owned()).collect()
     }
 }
 

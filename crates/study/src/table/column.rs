@@ -260,17 +260,13 @@ impl Column {
 
     /// Whether a row may have no value.
     pub fn is_optional(self) -> bool {
-        if let Self::Dimension(variable) = self {
+        match self {
             // A chain may not have a further variable.
-            return FURTHER_VARIABLES.contains(&variable);
+            Self::Dimension(variable) => FURTHER_VARIABLES.contains(&variable),
+            Self::Quantity(quantity) => ![Quantity::Mass, Quantity::WorkspaceRadius].contains(&quantity),
+            Self::HomePhi | Self::Margin(_) | Self::CertifiedLower | Self::CertifiedUpper => true,
+            _ => false,
         }
-        if let Self::Quantity(quantity) = self {
-            return ![Quantity::Mass, Quantity::WorkspaceRadius].contains(&quantity);
-        }
-        matches!(
-            self,
-            Self::HomePhi | Self::Margin(_) | Self::Quantity(_) | Self::CertifiedLower | Self::CertifiedUpper
-        )
     }
 
     /// Name to display, without the unit.

@@ -13,5 +13,5 @@ pub(crate) use named::archive_of;
 pub use named::{front_marks, is_row_name, named_row, row_names};
 pub use read::{TableContents, TableError, TableFault, read_designs, read_run_table, read_table};
 pub use row::{Row, RowError, TableRow, read_design};
-pub(super) use write::append_row;
+pub(super) use write::rows_as_csv;
 pub use write::table_bytes;

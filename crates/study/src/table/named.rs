@@ -1,6 +1,6 @@
 //! Names of designs that every table of a run has, so that a command can be written down before the ids are known.
 
-use kinefront_optimize::{Archive, Objectives, Outcome, knee};
+use kinefront_optimize::{Archive, Objectives, knee};
 
 use super::TableRow;
 use crate::Study;
@@ -21,13 +21,11 @@ pub fn is_row_name(text: &str) -> bool {
 pub fn row_names(rows: &[TableRow], study: &Study) -> Vec<String> {
     let mut names: Vec<String> = [BEST, KNEE, LARGEST].map(str::to_owned).into();
     let (_, marks) = front_of(rows, study);
-    names.extend(marks.into_iter().filter(|mark| !mark.is_empty()));
-    let mut seen = Vec::new();
-    names.retain(|name| {
-        let is_new = !seen.contains(name);
-        seen.push(name.clone());
-        is_new
-    });
+    for mark in marks.into_iter().filter(|mark| !mark.is_empty()) {
+        if !names.contains(&mark) {
+            names.push(mark);
+        }
+    }
     names
 }
 
@@ -54,11 +52,7 @@ fn largest(rows: &[TableRow]) -> Option<&TableRow> {
 pub(crate) fn archive_of<'a>(rows: impl IntoIterator<Item = &'a TableRow>) -> Archive {
     let mut archive = Archive::default();
     for (place, row) in rows.into_iter().enumerate() {
-        let outcome = Outcome {
-            objectives: row.row.objectives,
-            violation: row.row.violation,
-        };
-        archive.insert(place, &[], &outcome);
+        archive.insert(place, &[], &row.row.outcome());
     }
     archive
 }

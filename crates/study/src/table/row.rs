@@ -6,7 +6,7 @@ use super::Column;
 use crate::{CertifiedWorkspace, Study};
 use kinefront_model::evaluation::{Constraint, ConstraintSet, Evaluation, Quantity, QuantityValues};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, Design, DesignError, TextError};
-use kinefront_optimize::Objectives;
+use kinefront_optimize::{Objectives, Outcome};
 
 /// Stored values of one design.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +117,14 @@ impl Row {
     /// Whether the design has a workspace and keeps all limits.
     pub fn is_feasible(&self) -> bool {
         self.violation <= 0.0
+    }
+
+    /// What the row tells an optimizer.
+    pub(crate) fn outcome(&self) -> Outcome {
+        Outcome {
+            objectives: self.objectives,
+            violation: self.violation,
+        }
     }
 
     /// Mass in motion \[kg\].

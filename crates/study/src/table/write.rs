@@ -1,21 +1,19 @@
 //! Writing tables of designs as CSV.
 
-use std::io::{self, Write};
+use std::io;
 
 use super::{Cell, Column};
 
-/// Appends one row to a table.
+/// Returns rows as CSV, without a header.
 ///
 /// # Errors
-/// The error of the file.
-pub(crate) fn append_row<W: Write>(
-    table: &mut csv::Writer<W>,
-    cells: impl IntoIterator<Item = Cell>,
-) -> io::Result<()> {
-    for cell in cells {
-        table.write_field(cell.to_string())?;
+/// When the rows differ in their number of cells.
+pub(crate) fn rows_as_csv(rows: impl IntoIterator<Item = Vec<Cell>>) -> io::Result<Vec<u8>> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        table.write_record(row.iter().map(Cell::to_string))?;
     }
-    Ok(table.write_record(None::<&[u8]>)?)
+    table.into_inner().map_err(|error| error.into_error())
 }
 
 /// Returns a whole table as CSV.
@@ -26,11 +24,6 @@ pub fn table_bytes(
     columns: impl IntoIterator<Item = Column>,
     rows: impl IntoIterator<Item = Vec<Cell>>,
 ) -> io::Result<Vec<u8>> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    let names: Vec<_> = columns.into_iter().map(Column::name).collect();
-    table.write_record(names.iter().map(|name| name.as_bytes()))?;
-    for row in rows {
-        append_row(&mut table, row)?;
-    }
-    table.into_inner().map_err(|error| error.into_error())
+    let header = columns.into_iter().map(|column| Cell::Text(column.name())).collect();
+    rows_as_csv(std::iter::once(header).chain(rows))
 }
