@@ -4,10 +4,12 @@
 //! Variables that are listed or tied take their values when a candidate is completed: the nearest of the list, and what follows
 //! from the other variable.
 
+mod sizing;
+mod stronger;
+
 use super::{Study, Tie};
 use kinefront_model::evaluation::{
-    Better, Bound, Evaluation, GridChoice, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit,
-    SizingRanges, Thresholds, WorkspaceTarget,
+    Bound, Evaluation, GridChoice, Model, ModelSettings, Objective, Quantity, Thresholds, WorkspaceTarget,
 };
 use kinefront_model::mechanism::{Architecture, DESIGN_VARIABLES, Design, DesignError, DesignVariable, WorkingMode};
 use kinefront_model::workspace::GridError;
@@ -18,18 +20,15 @@ use rayon::prelude::*;
 /// Variables that are sized.
 const BARS: [DesignVariable; 2] = [DesignVariable::LegBarRadius, DesignVariable::PlatformBarRadius];
 
-/// Relative increases of the bars of a design whose proved radius falls short; the first that restores it is taken.
-const INCREASES: [f64; 5] = [1e-4, 2e-4, 3e-4, 5e-4, 1e-3];
-
-/// Relative increases of the dimensions of a design that misses a requirement somewhere in a prescribed region.
-const REGION_INCREASES: [f64; 7] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2];
-
 /// Variables that change when a design is scaled.
 const LENGTHS: [DesignVariable; 3] = [
     DesignVariable::BaseRadius,
     DesignVariable::PlatformRadius,
     DesignVariable::LinkLength,
 ];
+
+/// Values of the five dimensions of a design.
+type Dimensions = [f64; DESIGN_VARIABLES.len()];
 
 /// The optimization problem of a study, with designs encoded as vectors of values.
 ///
@@ -102,7 +101,7 @@ impl DesignProblem {
 
     /// Returns the values of the variables with the listed ones at the nearest value of their list and the tied ones as they
     /// follow.
-    fn settled(&self, mut values: [f64; DESIGN_VARIABLES.len()]) -> [f64; DESIGN_VARIABLES.len()] {
+    fn settled(&self, mut values: Dimensions) -> Dimensions {
         for (value, listed) in values.iter_mut().zip(&self.listed) {
             let wanted = *value;
             let distance = |other: f64| (other - wanted).abs();
@@ -120,22 +119,6 @@ impl DesignProblem {
             }
         }
         values
-    }
-
-    /// Raises the radius that a bar is tied to, if the bar needs more, so that the tie does not weaken sized bars.
-    fn with_ties_raised(&self, design: &Design) -> [f64; DESIGN_VARIABLES.len()] {
-        let mut values = design.values();
-        for (variable, tie) in DESIGN_VARIABLES.into_iter().zip(&self.ties) {
-            if let Some(tie) = tie
-                && variable.may_be_zero()
-                && tie.source.may_be_zero()
-            {
-                let needed = values[variable as usize] / tie.factor;
-                let source = &mut values[tie.source as usize];
-                *source = source.max(needed);
-            }
-        }
-        self.settled(values)
     }
 
     /// Evaluates the design that `x` encodes on the reference grid.
@@ -201,96 +184,6 @@ impl DesignProblem {
         }
     }
 
-    /// Whether the mass is an objective and no objective asks for thick bars, so that the lightest bars are best.
-    fn seeks_light_bars(&self) -> bool {
-        let asks_for_stiffness = |objective: &Objective| match objective.quantity {
-            Quantity::Worst(scalar) => scalar.entry().is_of_bars,
-            _ => false,
-        };
-        let is_mass = |objective: &Objective| objective.quantity == Quantity::Mass && objective.goal == Better::Lower;
-        let objectives = &self.model.settings().objectives;
-        objectives.iter().any(is_mass) && !objectives.iter().any(asks_for_stiffness)
-    }
-
-    /// Whether a prescribed region and the least mass determine the scale of a geometry: of all that the study asks, only masses
-    /// and the footprint depend on it.
-    fn may_scale(&self) -> bool {
-        let grows_with_scale = |limit: &QuantityLimit| {
-            let quantities = [
-                Quantity::Mass,
-                Quantity::LegsMass,
-                Quantity::PlatformMass,
-                Quantity::Worst(PoseScalar::Footprint),
-            ];
-            matches!(limit.bound, Bound::AtMost(_)) && quantities.contains(&limit.quantity)
-        };
-        let is_free = |length: &DesignVariable| {
-            let [lower, upper] = self.ranges[*length as usize];
-            let has_range = match self.ties[*length as usize] {
-                Some(tie) => !BARS.contains(&tie.source),
-                None => lower < upper,
-            };
-            has_range && self.listed[*length as usize].is_none()
-        };
-        self.is_prescribed
-            && self.model.settings().objectives.len() == 1
-            && self.seeks_light_bars()
-            && self.model.is_free_of_scale()
-            && self.model.settings().limits.iter().all(grows_with_scale)
-            && LENGTHS.iter().all(is_free)
-            && self.further.iter().all(|(variable, _)| variable.is_angle())
-    }
-
-    /// The lengths that follow from no other variable.
-    fn untied_lengths(&self) -> impl Iterator<Item = DesignVariable> {
-        LENGTHS
-            .into_iter()
-            .filter(|length| self.ties[*length as usize].is_none())
-    }
-
-    /// Returns what sizing a design may change.
-    fn sizing_ranges(&self, design: &Design) -> SizingRanges {
-        let [leg, platform] = BARS.map(|bar| self.ranges[bar as usize]);
-        let scale = if self.may_scale() {
-            self.untied_lengths()
-                .fold([0.0, f64::INFINITY], |[least, most], length| {
-                    let value = design.values()[length as usize];
-                    let [lower, upper] = self.ranges[length as usize].map(|bound| bound / value);
-                    [lower.max(least), upper.min(most)]
-                })
-        } else {
-            [1.0; 2]
-        };
-        SizingRanges {
-            leg,
-            platform,
-            listed: BARS.map(|bar| self.listed[bar as usize].clone()),
-            is_exact: self.model.settings().objectives.len() == 1,
-            scale,
-        }
-    }
-
-    /// Evaluates a design on the fine grid. A design for a prescribed region that does not hold it there, because it was sized for
-    /// the poses of the reference grid, is sized again; it is then another one.
-    pub fn verify(&self, design: &Design) -> Evaluation {
-        let evaluation = self.model.evaluate(design, GridChoice::Fine);
-        if evaluation.is_feasible() || !self.is_prescribed || !self.seeks_light_bars() {
-            return evaluation;
-        }
-        let target = WorkspaceTarget::Prescribed(GridChoice::Fine);
-        let resized = self
-            .model
-            .sized(design, &self.sizing_ranges(design), target)
-            .and_then(|sized| {
-                let values = self.with_ties_raised(&sized);
-                sized.with_dimensions(values).ok()
-            });
-        match resized.map(|design| self.model.evaluate(&design, GridChoice::Fine)) {
-            Some(resized) if resized.is_feasible() => resized,
-            _ => evaluation,
-        }
-    }
-
     /// Returns the problem with other limits of the scalars at each pose.
     pub(super) fn with_thresholds(&self, thresholds: Thresholds) -> Result<Self, GridError> {
         let settings = ModelSettings {
@@ -301,42 +194,6 @@ impl DesignProblem {
             model: Model::new(settings)?,
             ..self.clone()
         })
-    }
-
-    /// Returns designs near one that misses a requirement by little, in the order in which they are tried, each with the relative increase
-    /// of its dimensions: with ever thicker bars; for a prescribed region then ever larger as a whole, and with the next bar of a list.
-    pub(super) fn strengthened(&self, design: &Design) -> Vec<(Design, f64)> {
-        let bars: Vec<DesignVariable> = BARS.into_iter().filter(|bar| self.is_free(*bar)).collect();
-        let lengths = LENGTHS.iter().filter(|length| self.is_free(**length));
-        let all: Vec<DesignVariable> = lengths.chain(&bars).copied().collect();
-        let mut found = Vec::new();
-        let mut take = |changed: Option<[f64; DESIGN_VARIABLES.len()]>, increase: f64| {
-            let of_values = |values| design.with_dimensions(self.settled(values)).ok();
-            let other = changed.and_then(of_values).filter(|other| other != design);
-            found.extend(other.map(|other| (other, increase)));
-        };
-        let increases = if self.is_prescribed {
-            &REGION_INCREASES[..]
-        } else {
-            &INCREASES
-        };
-        for &increase in increases {
-            take(self.times(design, &bars, 1.0 + increase), increase);
-        }
-        if self.is_prescribed {
-            for increase in REGION_INCREASES {
-                take(self.times(design, &all, 1.0 + increase), increase);
-            }
-            for bar in BARS {
-                let radius = design.values()[bar as usize];
-                let listed = self.listed[bar as usize].iter().flatten().copied();
-                if let Some(next) = listed.filter(|other| *other > radius).reduce(f64::min) {
-                    // Listed bars are within their bounds; the nearest entry of the list is the next one.
-                    take(self.times(design, &[bar], next / radius), next / radius - 1.0);
-                }
-            }
-        }
-        found
     }
 
     /// Returns the variables of an architecture that range freely between their bounds, each with those that are tied to it.
@@ -387,24 +244,6 @@ impl DesignProblem {
     fn is_free(&self, variable: DesignVariable) -> bool {
         let place = variable as usize;
         self.listed[place].is_none() && self.ties[place].is_none() && self.ranges[place][0] < self.ranges[place][1]
-    }
-
-    /// Returns the dimensions of a design with some of them multiplied, if the bounds allow it.
-    fn times(
-        &self,
-        design: &Design,
-        variables: &[DesignVariable],
-        factor: f64,
-    ) -> Option<[f64; DESIGN_VARIABLES.len()]> {
-        let mut values = design.values();
-        for &variable in variables {
-            let value = &mut values[variable as usize];
-            *value *= factor;
-            if *value > self.ranges[variable as usize][1] {
-                return None;
-            }
-        }
-        (!variables.is_empty()).then_some(values)
     }
 
     /// Returns the workspace radius that the study asks for at least \[m\].
@@ -503,7 +342,7 @@ impl Problem for DesignProblem {
             .and_then(|target| self.complete(&candidate.x, target))
             .unwrap_or(candidate.x);
         if let Some(values) = x.get_mut(1..=DESIGN_VARIABLES.len())
-            && let Ok(all) = <[f64; DESIGN_VARIABLES.len()]>::try_from(&*values)
+            && let Ok(all) = Dimensions::try_from(&*values)
         {
             values.copy_from_slice(&self.settled(all));
         }
