@@ -5,6 +5,7 @@ mod bars;
 mod catalogue;
 mod declare;
 mod drives;
+mod grid;
 mod joints;
 mod list;
 mod material;
@@ -23,6 +24,7 @@ pub use catalogue::{BuiltinCatalogue, CatalogueChoice, CatalogueFault, FileScope
 pub(crate) use declare::wrong_name;
 pub use declare::{Check, Initial, Setting, is_shown};
 pub use drives::{DRIVE_CATALOGUES, DriveKind, DriveRow, DriveSection};
+pub use grid::{GridSection, Grids};
 pub use joints::JointSection;
 pub use list::settings;
 pub use material::{BuiltinMaterial, MATERIALS, MaterialSection};
@@ -31,12 +33,10 @@ pub(crate) use question::unknown_quantity;
 pub use question::{LimitChoice, Limits, ObjectiveChoice};
 pub use region::{RegionKind, RegionSection};
 pub use sections::{
-    ActuatorSection, Bounds, GeometrySection, GridSection, Grids, LengthChoice, ModelSection, RailSection,
-    RailSupportChoice, ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
+    ActuatorSection, Bounds, GeometrySection, LengthChoice, ModelSection, RailSection, RailSupportChoice,
+    ReferenceDesign, RequirementSection, StiffnessChoice, TelescopicBar, WorkspaceSection,
 };
 pub use strength::{LoadShapeChoice, StrengthSection};
 pub use surroundings::{ObstacleSection, RoomSection, settings_of_surroundings};
-pub use task::{
-    AnywhereSection, DynamicsSections, LoadSection, PayloadSection, TaskSection, TaskShapeChoice, ToleranceSection,
-};
+pub use task::{AnywhereSection, LoadSection, PayloadSection, TaskSection, TaskShapeChoice, ToleranceSection};
 pub use variables::{Tie, VariableChoice, Variables};

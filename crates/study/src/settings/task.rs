@@ -2,11 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::DriveSection;
 use super::declare::{Check, Initial, section};
-use kinefront_model::dynamics::{
-    Anywhere, DriveInertia, DynamicsSettings, MotionLaw, Payload, Task, TaskShape, TaskTiming, Tolerances,
-};
+use kinefront_model::dynamics::{MotionLaw, Task, TaskShape, TaskTiming};
 
 section! {
     /// What the platform carries.
@@ -333,63 +330,5 @@ impl TaskSection {
             }
         }
         faults
-    }
-}
-
-/// The sections of a study that describe payload, drives, motion and tolerances.
-#[derive(Debug, Clone, Copy)]
-pub struct DynamicsSections<'a> {
-    /// `[payload]`.
-    pub payload: &'a PayloadSection,
-    /// `[drives]`.
-    pub drives: &'a DriveSection,
-    /// `[loads]`.
-    pub loads: &'a LoadSection,
-    /// `[anywhere]`.
-    pub anywhere: &'a AnywhereSection,
-    /// `[tolerances]`.
-    pub tolerances: &'a ToleranceSection,
-}
-
-impl From<DynamicsSections<'_>> for DynamicsSettings {
-    fn from(sections: DynamicsSections<'_>) -> Self {
-        let DynamicsSections {
-            payload,
-            drives,
-            loads,
-            anywhere,
-            tolerances,
-        } = sections;
-        let [fx, fy] = loads.tool_force_n;
-        Self {
-            payload: Payload {
-                mass: payload.mass_kg,
-                inertia: payload.inertia_kg_m2,
-                centre: payload.centre_m,
-            },
-            drives: DriveInertia {
-                slider_mass: drives.slider_mass_kg,
-                prismatic: drives.prismatic_inertia_kg,
-                revolute: drives.revolute_inertia_kg_m2,
-            },
-            gravity: loads.gravity_m_per_s2,
-            tool: [fx, fy, loads.tool_moment_nm],
-            anywhere: Anywhere {
-                velocity: anywhere.v_m_per_s,
-                omega: anywhere.omega_rad_per_s,
-                acceleration: anywhere.a_m_per_s2,
-                alpha: anywhere.alpha_rad_per_s2,
-                force: anywhere.force_n,
-                moment: anywhere.moment_nm,
-            },
-            tolerances: Tolerances {
-                encoder_prismatic: tolerances.encoder_m,
-                encoder_revolute: tolerances.encoder_rad,
-                link: tolerances.link_m,
-                base: tolerances.base_m,
-                platform: tolerances.platform_m,
-                play: tolerances.play_m,
-            },
-        }
     }
 }

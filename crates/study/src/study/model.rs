@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::{Catalogues, Study};
-use crate::settings::{DynamicsSections, LengthChoice, StiffnessChoice, TelescopicBar};
-use kinefront_model::dynamics::DynamicsSettings;
+use crate::settings::{LengthChoice, StiffnessChoice, TelescopicBar};
+use kinefront_model::dynamics::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};
 use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar, Thresholds};
 use kinefront_model::kinematics::CharacteristicLength;
 use kinefront_model::mechanism::{Arrangement, BarLength, JointMasses, JointSizes, LegSettings};
@@ -56,13 +56,7 @@ impl Study {
             thresholds: self.thresholds(),
             in_plane_force: self.requirements.in_plane_force_n,
             loads: self.strength.loads(&self.requirements),
-            dynamics: DynamicsSettings::from(DynamicsSections {
-                payload: &self.payload,
-                drives: &self.drives,
-                loads: &self.loads,
-                anywhere: &self.anywhere,
-                tolerances: &self.tolerances,
-            }),
+            dynamics: self.dynamics(),
             drive_catalogue: drives,
             task: self.task.task(),
             objectives: self.objectives(),
@@ -77,6 +71,41 @@ impl Study {
             reference_grid: (&self.grid.reference).try_into()?,
             fine_grid: (&self.grid.fine).try_into()?,
         })
+    }
+
+    /// Returns the payload, what moves besides the members, the loads and motions, and the tolerances, in SI units.
+    fn dynamics(&self) -> DynamicsSettings {
+        let [fx, fy] = self.loads.tool_force_n;
+        DynamicsSettings {
+            payload: Payload {
+                mass: self.payload.mass_kg,
+                inertia: self.payload.inertia_kg_m2,
+                centre: self.payload.centre_m,
+            },
+            drives: DriveInertia {
+                slider_mass: self.drives.slider_mass_kg,
+                prismatic: self.drives.prismatic_inertia_kg,
+                revolute: self.drives.revolute_inertia_kg_m2,
+            },
+            gravity: self.loads.gravity_m_per_s2,
+            tool: [fx, fy, self.loads.tool_moment_nm],
+            anywhere: Anywhere {
+                velocity: self.anywhere.v_m_per_s,
+                omega: self.anywhere.omega_rad_per_s,
+                acceleration: self.anywhere.a_m_per_s2,
+                alpha: self.anywhere.alpha_rad_per_s2,
+                force: self.anywhere.force_n,
+                moment: self.anywhere.moment_nm,
+            },
+            tolerances: Tolerances {
+                encoder_prismatic: self.tolerances.encoder_m,
+                encoder_revolute: self.tolerances.encoder_rad,
+                link: self.tolerances.link_m,
+                base: self.tolerances.base_m,
+                platform: self.tolerances.platform_m,
+                play: self.tolerances.play_m,
+            },
+        }
     }
 
     /// Derives the thresholds of the constraints from the requirements.
