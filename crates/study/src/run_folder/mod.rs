@@ -10,6 +10,7 @@
 mod check;
 mod checkpoint;
 mod design_table;
+mod error;
 mod lock;
 mod merge;
 mod read;
@@ -19,8 +20,9 @@ mod write;
 
 pub use check::{Finding, Inspection, Repair};
 pub use checkpoint::Checkpoint;
+pub use error::RunFolderError;
 pub use merge::{Merge, MergeError};
-pub use read::{RunFolder, RunFolderError};
+pub use read::RunFolder;
 pub use report::{FileSums, HypervolumeReference, MergedRun, RunReport};
 pub use resume::{ResumeError, ResumeOptions, Resumption};
 pub use write::RunWriter;
