@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::stopping::Stopping;
+use super::stopping::reason_to_end;
 use super::{
     AlgorithmName, Batch, DesignProblem, EndReason, Event, GenerationSummary, Row, RunControl, RunTimes, Study,
     TableRow,
@@ -37,7 +37,6 @@ pub struct StudySearch {
     pub(super) problem: DesignProblem,
     pub(super) algorithm: Box<dyn Algorithm>,
     pub(super) pool: rayon::ThreadPool,
-    stopping: Stopping,
     /// Number of evaluations allowed.
     pub(super) budget: usize,
     pub(super) found: Found,
@@ -74,7 +73,6 @@ impl StudySearch {
             algorithm: algorithm(&study, &problem),
             problem,
             pool: pool.build()?,
-            stopping: Stopping::new(&study.optimizer),
             budget: study.optimizer.evaluations,
             found: Found::new(&study),
             times: RunTimes::default(),
@@ -137,12 +135,9 @@ impl StudySearch {
                 return Ok(control.end_reason());
             };
             self.tell(generation, &mut send);
-            let spent = self.found.evaluated >= self.budget;
-            if let Some(reason) = self
-                .stopping
-                .reason(start.elapsed(), &self.found.history)
-                .filter(|_| !spent)
-            {
+            let is_spent = self.found.evaluated >= self.budget;
+            let reason = reason_to_end(&self.study.optimizer, start.elapsed(), &self.found.history);
+            if let Some(reason) = reason.filter(|_| !is_spent) {
                 return Ok(reason);
             }
         }

@@ -4,34 +4,25 @@ use std::time::Duration;
 
 use super::{EndReason, GenerationSummary, OptimizerSection, Stagnation};
 
-/// Stopping rules of a study other than its budget of evaluations.
-#[derive(Debug, Clone)]
-pub(super) struct Stopping {
-    time_limit: Option<f64>,
-    stagnation: Option<Stagnation>,
-}
-
-impl Stopping {
-    pub fn new(optimizer: &OptimizerSection) -> Self {
-        Self {
-            time_limit: optimizer.time_limit_s,
-            stagnation: optimizer.stagnation,
-        }
+/// Returns the reason why a search of this duration and history ends before its budget is used up, or `None` if it continues.
+pub(super) fn reason_to_end(
+    optimizer: &OptimizerSection,
+    elapsed: Duration,
+    history: &[GenerationSummary],
+) -> Option<EndReason> {
+    if optimizer
+        .time_limit_s
+        .is_some_and(|limit| elapsed.as_secs_f64() >= limit)
+    {
+        return Some(EndReason::TimeUp);
     }
-
-    /// Returns the reason why a search of this duration and history ends, or `None` if it continues.
-    pub fn reason(&self, elapsed: Duration, history: &[GenerationSummary]) -> Option<EndReason> {
-        if self.time_limit.is_some_and(|limit| elapsed.as_secs_f64() >= limit) {
-            return Some(EndReason::TimeUp);
-        }
-        let Stagnation { evaluations, gain } = self.stagnation?;
-        let last = history.last()?;
-        let since = last.evaluations.checked_sub(evaluations)?;
-        // The latest state that is at least that many evaluations old; if there is none, no gain can be measured yet.
-        let before = history.iter().rev().find(|summary| summary.evaluations <= since)?;
-        let stagnated = before.hypervolume > 0.0 && last.hypervolume < before.hypervolume * (1.0 + gain);
-        stagnated.then_some(EndReason::Stagnated)
-    }
+    let Stagnation { evaluations, gain } = optimizer.stagnation?;
+    let last = history.last()?;
+    let since = last.evaluations.checked_sub(evaluations)?;
+    // The latest state that is at least that many evaluations old; if there is none, no gain can be measured yet.
+    let before = history.iter().rev().find(|summary| summary.evaluations <= since)?;
+    let stagnated = before.hypervolume > 0.0 && last.hypervolume < before.hypervolume * (1.0 + gain);
+    stagnated.then_some(EndReason::Stagnated)
 }
 
 #[cfg(test)]
@@ -54,14 +45,14 @@ mod tests {
 
     #[test]
     fn stagnation_is_too_little_gain_over_the_evaluations_given() {
-        let rule = Stopping {
-            time_limit: None,
+        let optimizer = OptimizerSection {
             stagnation: Some(Stagnation {
                 evaluations: 60,
                 gain: 0.01,
             }),
+            ..OptimizerSection::default()
         };
-        let reason = |hypervolumes: &[f64]| rule.reason(Duration::ZERO, &history(hypervolumes));
+        let reason = |hypervolumes: &[f64]| reason_to_end(&optimizer, Duration::ZERO, &history(hypervolumes));
         assert_eq!(
             reason(&[100.0, 100.0]),
             None,
@@ -74,14 +65,12 @@ mod tests {
 
     #[test]
     fn the_time_limit_is_looked_at_after_a_generation() {
-        let rule = Stopping {
-            time_limit: Some(2.0),
-            stagnation: None,
+        let optimizer = OptimizerSection {
+            time_limit_s: Some(2.0),
+            ..OptimizerSection::default()
         };
-        assert_eq!(rule.reason(Duration::from_secs(1), &history(&[1.0])), None);
-        assert_eq!(
-            rule.reason(Duration::from_secs(2), &history(&[1.0])),
-            Some(EndReason::TimeUp)
-        );
+        let reason = |seconds: u64| reason_to_end(&optimizer, Duration::from_secs(seconds), &history(&[1.0]));
+        assert_eq!(reason(1), None);
+        assert_eq!(reason(2), Some(EndReason::TimeUp));
     }
 }

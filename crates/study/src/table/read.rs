@@ -111,10 +111,7 @@ pub fn read_table(path: &Path, study: &Study) -> Result<TableContents, TableErro
     let read = || -> Result<TableContents, TableFault> {
         let mut reader = TableReader::open(path)?;
         reader.require(Column::common().chain([Column::Violation]))?;
-        let mut rows = Vec::new();
-        while let Some(row) = reader.row(|fields| fields.table_row(study))? {
-            rows.push(row);
-        }
+        let mut rows = reader.rows(|fields| fields.table_row(study))?;
         // A row that happens to parse may still be cut within its last number.
         let cut_line = reader.is_cut.then_some(reader.line);
         if reader.is_cut && reader.last_parsed {
@@ -164,14 +161,10 @@ pub fn read_designs(path: &Path, study: &Study) -> Result<Vec<(usize, Design)>, 
             Column::of_designs(study)
                 .filter(|column| matches!(column, Column::Id | Column::Architecture | Column::Dimension(_))),
         )?;
-        let mut rows = Vec::new();
-        while let Some(row) = reader.row(|fields| {
+        reader.rows(|fields| {
             let design = read_design(study, |column| fields.text(column), |column| fields.number(column))?;
             Ok((fields.whole(Column::Id)?, design))
-        })? {
-            rows.push(row);
-        }
-        Ok(rows)
+        })
     };
     read().map_err(TableError::at(path))
 }
@@ -356,32 +349,35 @@ impl TableReader {
         }
     }
 
-    /// Reads the next row; `None` at the end, and for an incomplete last row that does not parse.
-    fn row<T>(&mut self, parse: impl Fn(&Fields<'_>) -> Result<T, RowError>) -> Result<Option<T>, TableFault> {
-        self.line = self.records.position().line();
-        let found = self.records.read_record(&mut self.record);
-        // The reader reaches the end of the file with the last line only.
-        let position = self.records.position();
-        // A row that begins on an earlier line was not cut: a quotation mark that is not closed swallowed the others.
-        let is_open = self.ends_open && position.byte() >= self.length && position.line() <= self.line;
-        let line = self.line;
-        let parsed = match found {
-            Ok(false) => return Ok(None),
-            Ok(true) => {
-                let fields = Fields {
-                    columns: &self.columns,
-                    record: &self.record,
-                };
-                parse(&fields).map_err(|error| TableFault::Row { line, error })
+    /// Reads the rows up to the end, or to an incomplete last row that does not parse.
+    fn rows<T>(&mut self, parse: impl Fn(&Fields<'_>) -> Result<T, RowError>) -> Result<Vec<T>, TableFault> {
+        let mut rows = Vec::new();
+        loop {
+            self.line = self.records.position().line();
+            let found = self.records.read_record(&mut self.record);
+            // The reader reaches the end of the file with the last line only.
+            let position = self.records.position();
+            // A row that begins on an earlier line was not cut: a quotation mark that is not closed swallowed the others.
+            let is_open = self.ends_open && position.byte() >= self.length && position.line() <= self.line;
+            let line = self.line;
+            let parsed = match found {
+                Ok(false) => return Ok(rows),
+                Ok(true) => {
+                    let fields = Fields {
+                        columns: &self.columns,
+                        record: &self.record,
+                    };
+                    parse(&fields).map_err(|error| TableFault::Row { line, error })
+                }
+                Err(error) => Err(csv_fault(&error, line)),
+            };
+            self.is_cut = is_open;
+            self.last_parsed = is_open && parsed.is_ok();
+            match parsed {
+                Ok(row) => rows.push(row),
+                Err(_) if is_open => return Ok(rows),
+                Err(fault) => return Err(fault),
             }
-            Err(error) => Err(csv_fault(&error, line)),
-        };
-        self.is_cut = is_open;
-        self.last_parsed = is_open && parsed.is_ok();
-        match parsed {
-            Ok(row) => Ok(Some(row)),
-            Err(_) if is_open => Ok(None),
-            Err(fault) => Err(fault),
         }
     }
 }
