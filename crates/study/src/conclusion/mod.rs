@@ -271,11 +271,9 @@ impl<'a> Settling<'a> {
             self.next_id += 1;
         }
         FrontMember {
-            id,
             generation: entry.row.generation as usize,
-            evaluation,
             reference_radius: entry.row.workspace_radius(),
-            certified: None,
+            ..FrontMember::of(id, evaluation)
         }
     }
 

@@ -188,7 +188,14 @@ impl LocalDesign {
         let with_entry = |entry: &OtherEntry| {
             let start = entry.applied_to(&polished.design);
             let found = start.and_then(|start| optimum_of(problem, &start, polished.home));
-            alternative(polished, entry.label.clone(), found.as_ref())
+            let found = found.as_ref();
+            AlternativeJson {
+                label: entry.label.clone(),
+                value: found.map(|found| found.objective),
+                change: found.map(|found| found.objective / polished.objective - 1.0),
+                design: found.map(|found| found.design.to_string()),
+                home_phi_deg: found.map(|found| found.home.to_degrees().rem_euclid(360.0)),
+            }
         };
         self.entries.par_iter().map(with_entry).collect()
     }
@@ -198,14 +205,4 @@ impl LocalDesign {
 fn optimum_of(problem: &LocalProblem, start: &Design, home: f64) -> Option<Polished> {
     let problem = LocalProblem::new(problem.question().clone(), start).ok()?;
     problem.polish(start, home).filter(Polished::is_feasible)
-}
-
-fn alternative(polished: &Polished, label: String, found: Option<&Polished>) -> AlternativeJson {
-    AlternativeJson {
-        label,
-        value: found.map(|found| found.objective),
-        change: found.map(|found| found.objective / polished.objective - 1.0),
-        design: found.map(|found| found.design.to_string()),
-        home_phi_deg: found.map(|found| found.home.to_degrees().rem_euclid(360.0)),
-    }
 }

@@ -261,16 +261,12 @@ impl DesignProblem {
 
     /// Returns the variables of the problem.
     pub fn variables(&self) -> Vec<Variable> {
-        std::iter::once(Variable::Categorical {
-            choices: self.architectures.len(),
-        })
-        .chain(
-            self.ranges
-                .iter()
-                .chain(self.further.iter().map(|(_, range)| range))
-                .map(|&[lower, upper]| Variable::Real { lower, upper }),
-        )
-        .collect()
+        let choices = self.architectures.len();
+        let ranges = self.ranges.iter().chain(self.further.iter().map(|(_, range)| range));
+        let reals = ranges.map(|&[lower, upper]| Variable::Real { lower, upper });
+        std::iter::once(Variable::Categorical { choices })
+            .chain(reals)
+            .collect()
     }
 }
 

@@ -93,30 +93,21 @@ impl Study {
                 values: values.map(|value| value.map(toml::Value::to_string)),
             })
         });
-        let of_list = |key: &str, differs: bool, counts: [usize; 2]| {
-            differs.then(|| SettingDifference {
-                key: key.to_owned(),
-                values: counts.map(|count| (count > 0).then(|| format!("{count} stated"))),
-            })
-        };
         let both = [self, other];
         let of_lists = [
-            of_list(
-                "obstacles",
-                self.obstacles != other.obstacles,
-                both.map(|study| study.obstacles.len()),
-            ),
-            of_list(
-                "room",
-                self.room != other.room,
-                both.map(|study| usize::from(study.room.is_some())),
-            ),
-            of_list(
-                "references",
-                self.references != other.references,
-                both.map(|study| study.references.len()),
-            ),
+            difference_of_lists("obstacles", both.map(|study| study.obstacles.as_slice())),
+            difference_of_lists("room", both.map(|study| study.room.as_slice())),
+            difference_of_lists("references", both.map(|study| study.references.as_slice())),
         ];
         Some(of_settings.chain(of_lists.into_iter().flatten()).collect())
     }
+}
+
+/// Returns the difference of two lists, if there is one, by the numbers of their entries.
+fn difference_of_lists<T: PartialEq>(key: &str, lists: [&[T]; 2]) -> Option<SettingDifference> {
+    let stated = |list: &[T]| (!list.is_empty()).then(|| format!("{} stated", list.len()));
+    (lists[0] != lists[1]).then(|| SettingDifference {
+        key: key.to_owned(),
+        values: lists.map(stated),
+    })
 }

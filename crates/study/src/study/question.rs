@@ -85,32 +85,13 @@ impl Study {
             }
         }
     }
-}
 
-/// Returns the scalar that a limit bounds at each pose of the region: that of the least value over poses from below, or that of the
-/// largest value from above.
-fn limited_scalar(limit: &QuantityLimit) -> Option<PoseScalar> {
-    let Quantity::Worst(scalar) = limit.quantity else {
-        return None;
-    };
-    let from = match limit.bound {
-        Bound::AtLeast(_) => Better::Higher,
-        Bound::AtMost(_) => Better::Lower,
-    };
-    (scalar.bounds_poses() && scalar.entry().quantity.better == from).then_some(scalar)
-}
-
-impl Study {
     /// Returns the reference point of the hypervolume, as it is minimised: the reference mass \[kg\] and 0 for the paper's
     /// objectives.
     pub fn hypervolume_reference(&self) -> Objectives {
         let of_objective = |(place, objective): (usize, Objective)| {
-            let stated = self
-                .hypervolume
-                .reference
-                .as_ref()
-                .and_then(|values| values.get(place).copied());
-            let value = stated.unwrap_or(match objective.goal {
+            let stated = self.hypervolume.reference.iter().flatten().nth(place);
+            let value = stated.copied().unwrap_or(match objective.goal {
                 Better::Higher => 0.0,
                 Better::Lower => self.exceeded(objective.quantity),
             });
@@ -154,4 +135,17 @@ impl Study {
         let units: Vec<&str> = units.filter(|unit| !unit.is_empty()).collect();
         units.join("·")
     }
+}
+
+/// Returns the scalar that a limit bounds at each pose of the region: that of the least value over poses from below, or that of the
+/// largest value from above.
+fn limited_scalar(limit: &QuantityLimit) -> Option<PoseScalar> {
+    let Quantity::Worst(scalar) = limit.quantity else {
+        return None;
+    };
+    let from = match limit.bound {
+        Bound::AtLeast(_) => Better::Higher,
+        Bound::AtMost(_) => Better::Lower,
+    };
+    (scalar.bounds_poses() && scalar.entry().quantity.better == from).then_some(scalar)
 }

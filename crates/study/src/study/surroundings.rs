@@ -86,10 +86,9 @@ fn base_outside(study: &Study) -> Option<String> {
     let room = study.room.as_ref()?.outline().ok()?;
     let geometry = Geometry::from(Arrangement::from(&study.geometry));
     let [radius, _] = study.range(DesignVariable::BaseRadius);
-    let outside = (0..LEGS)
+    let (leg, joint) = (0..LEGS)
         .map(|leg| (leg, geometry.base_joint(leg, radius)))
         .find(|(_, joint)| !room.contains(*joint))?;
-    let (leg, joint) = outside;
     Some(format!(
         "is smaller than the base: A{} of the smallest one (R = {radius} m) is at ({:.3}, {:.3}) m; enlarge the room, or the range \
          of R",

@@ -94,46 +94,21 @@ pub(super) fn faults(study: &Study) -> Vec<(String, String)> {
     for (variable, key) in Bounds::keys() {
         let key = format!("variables.{key}");
         let fits = |value: f64| value.is_finite() && (value > 0.0 || variable.may_be_zero() && value == 0.0);
-        match study.variables.of(variable) {
+        let message = match study.variables.of(variable) {
             Some(VariableChoice::Fixed(value)) if !fits(*value) => {
-                faults.push((key, format!("is {value}; it must be a length above 0 m")));
+                Some(format!("is {value}; it must be a length above 0 m"))
             }
             Some(VariableChoice::Listed(values)) if values.is_empty() => {
-                faults.push((key, "is an empty list; it must have at least one value".to_owned()));
+                Some("is an empty list; it must have at least one value".to_owned())
             }
             Some(VariableChoice::Listed(values)) => {
-                if let Some(value) = values.iter().find(|value| !fits(**value)) {
-                    faults.push((key, format!("contains {value}; every value must be a length above 0 m")));
-                }
+                let wrong = values.iter().find(|value| !fits(**value));
+                wrong.map(|value| format!("contains {value}; every value must be a length above 0 m"))
             }
-            Some(VariableChoice::Tied(text)) => match Tie::parse(text) {
-                None => {
-                    let message = format!(
-                        "is \"{text}\"; it must be a number, a list of numbers, or another variable with a factor, as in \"0.5 rj\" \
-                         (R, r, Lb, rj, rp)"
-                    );
-                    faults.push((key, message));
-                }
-                Some(tie) if tie.source == variable => {
-                    faults.push((key, "is tied to itself; name another variable".to_owned()));
-                }
-                Some(tie) if study.tie(tie.source).is_some() => {
-                    let message = format!(
-                        "is tied to {}, which is tied itself; name the variable that is free",
-                        tie.source.key()
-                    );
-                    faults.push((key, message));
-                }
-                Some(_) if has_catalogue(study, variable) => {
-                    faults.push((
-                        key,
-                        "is tied, but its bars are selected from a catalogue; omit one of the two".to_owned(),
-                    ));
-                }
-                Some(_) => {}
-            },
-            _ => {}
-        }
+            Some(VariableChoice::Tied(text)) => fault_of_tie(study, variable, text),
+            _ => None,
+        };
+        faults.extend(message.map(|message| (key, message)));
         if faults.is_empty() && study.listed(variable).is_some_and(|values| values.is_empty()) {
             let [low, high] = study.bounds.range(variable);
             let message = format!("are [{low}, {high}]; no bar of the catalogue has an outer radius within them");
@@ -141,6 +116,22 @@ pub(super) fn faults(study: &Study) -> Vec<(String, String)> {
         }
     }
     faults
+}
+
+fn fault_of_tie(study: &Study, variable: DesignVariable, text: &str) -> Option<String> {
+    match Tie::parse(text) {
+        None => Some(format!(
+            "is \"{text}\"; it must be a number, a list of numbers, or another variable with a factor, as in \"0.5 rj\" \
+             (R, r, Lb, rj, rp)"
+        )),
+        Some(tie) if tie.source == variable => Some("is tied to itself; name another variable".to_owned()),
+        Some(tie) if study.tie(tie.source).is_some() => Some(format!(
+            "is tied to {}, which is tied itself; name the variable that is free",
+            tie.source.key()
+        )),
+        Some(_) => has_catalogue(study, variable)
+            .then(|| "is tied, but its bars are selected from a catalogue; omit one of the two".to_owned()),
+    }
 }
 
 fn has_catalogue(study: &Study, variable: DesignVariable) -> bool {

@@ -222,16 +222,8 @@ fn every_choice_reaches_the_model() {
 fn a_grid_may_state_some_of_its_keys() {
     let study = parsed("[grid.fine]\nray_steps = 100\n[grid.reference]\nphi_step_deg = 5");
     let settings = study.model().expect("a model").settings().clone();
-    let of = |grid: Grid| {
-        (
-            grid.phi_step_deg(),
-            grid.directions(),
-            grid.ray_steps(),
-            grid.halvings(),
-        )
-    };
-    assert_eq!(of(settings.fine_grid), (0.5, 180, 100, 12));
-    assert_eq!(of(settings.reference_grid), (5.0, 36, 50, 12));
+    assert_eq!(Ok(settings.fine_grid), Grid::new(0.5, 180, 100, 12));
+    assert_eq!(Ok(settings.reference_grid), Grid::new(5.0, 36, 50, 12));
     let unknown = printed("[grid.fine]\nray_step = 100");
     assert!(
         unknown.contains("mine.toml:2") && unknown.contains("ray_steps"),
