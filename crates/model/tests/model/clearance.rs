@@ -9,7 +9,7 @@ use kinefront_model::spatial::{Pose, Rotation};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::strategies;
+use crate::strategies::{self, parsed};
 use kinefront_testkit::oracle::{Fault, Found, distance_to_cylinder, distance_to_prism, oracle};
 use kinefront_testkit::repetitions;
 
@@ -303,9 +303,7 @@ fn obstacles_are_as_far_as_a_library_measures() {
 /// A member that leaves the room has a clearance below 0, and one within it the distance from the walls.
 #[test]
 fn the_room_is_not_left() {
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     // An L without its upper right quarter.
     let corners = [
         [-4.0, -4.0],

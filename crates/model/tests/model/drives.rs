@@ -7,6 +7,8 @@ use kinefront_model::evaluation::{
 use kinefront_model::mechanism::{Design, JointKind, JointMasses};
 use kinefront_testkit::numbers as random_numbers;
 
+use super::strategies::parsed;
+
 /// Designs with motors on the base, at the elbow and at the platform, that slide and that turn.
 const DESIGNS: [&str; 6] = [
     "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
@@ -77,7 +79,7 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
     let mut random = random_numbers(7);
     let (mut counts, mut reserved) = ([0; 2], 0);
     for text in DESIGNS {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let kind = design.architecture().actuator();
         let needed = alone(&design, &light(kind)).0;
         let force = largest_of_legs(needed.rms_force);
@@ -190,7 +192,7 @@ fn the_shortest_cycle_just_keeps_the_limits() {
     };
     let mut set_by = Vec::new();
     for text in DESIGNS {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let (speed, force) = match design.architecture().actuator() {
             JointKind::Prismatic => (Quantity::PathSpeed, Quantity::PathForce),
             JointKind::Revolute => (Quantity::PathRate, Quantity::PathTorque),

@@ -963,7 +963,7 @@ fn the_frequencies_of_the_frame_are_below_those_of_its_condensed_mass() {
 
 #[test]
 fn rails_that_bend_have_no_frequencies_of_a_frame() {
-    let design: Design = "3-PRR R=3 r=1.2 Lb=1.8 rj=0.03 rp=0.05".parse().expect("a design");
+    let design = parsed("3-PRR R=3 r=1.2 Lb=1.8 rj=0.03 rp=0.05");
     let model = super::strategies::model(|model| {
         model.rails = Some(RailSettings {
             section: CrossSection::Round,

@@ -8,7 +8,7 @@ use kinefront_model::spatial::{Pose, unit};
 use kinefront_model::workspace::Region;
 use nalgebra::Matrix2;
 
-use super::strategies;
+use super::strategies::{self, parsed};
 
 const DESIGNS: [&str; 4] = [
     "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
@@ -46,7 +46,7 @@ fn poses(evaluation: &Evaluation) -> Vec<Pose> {
 fn check(quantity: Quantity, tolerance: f64, direct: impl Fn(&Model, &Evaluation) -> f64) {
     let model = model();
     for text in DESIGNS {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let evaluation = model.evaluate(&design, GridChoice::Reference);
         let (found, wanted) = (
             evaluation.quantities.get(quantity).expect("a value"),
@@ -246,7 +246,7 @@ fn the_mean_dexterity_is_the_integral_over_the_region() {
 #[test]
 fn asking_for_quantities_changes_no_other_value() {
     for text in DESIGNS {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let asked = model().evaluate(&design, GridChoice::Reference);
         let plain = Model::default().evaluate(&design, GridChoice::Reference);
         for quantity in Quantity::all() {
@@ -268,7 +268,7 @@ fn asking_for_quantities_changes_no_other_value() {
 /// A limit of a pose bounds the largest disc: beyond it the value is missed, within it the value is kept.
 #[test]
 fn limits_of_poses_bound_the_workspace() {
-    let design: Design = DESIGNS[0].parse().expect("a design");
+    let design = parsed(DESIGNS[0]);
     let free = model().evaluate(&design, GridChoice::Reference);
     let bounded = |change: fn(&mut kinefront_model::evaluation::ModelSettings)| {
         strategies::model(|settings| {
@@ -334,7 +334,7 @@ fn limits_of_poses_bound_the_workspace() {
 
 #[test]
 fn limits_of_designs_make_them_infeasible_by_their_relative_shortfall() {
-    let design: Design = DESIGNS[0].parse().expect("a design");
+    let design = parsed(DESIGNS[0]);
     let with = |quantity, bound| {
         strategies::model(|settings| {
             settings.quantities = QuantitySet::all();

@@ -8,6 +8,7 @@ use nalgebra::Matrix6;
 use serde_json::Value;
 
 use super::search::plain_search;
+use super::strategies::{self, parsed};
 
 pub fn fixture(name: &str) -> Value {
     let path = format!("{}/tests/fixtures/{name}", env!("CARGO_MANIFEST_DIR"));
@@ -67,8 +68,7 @@ fn poses_agree_with_the_finite_element_solver() {
     let cases = fixture("cases.json");
     let cases = cases["poses"].as_array().expect("poses");
     assert_eq!(cases.len(), 12);
-    let compliance =
-        super::strategies::model(|settings| settings.stiffness_definition = StiffnessDefinition::Compliance);
+    let compliance = strategies::model(|settings| settings.stiffness_definition = StiffnessDefinition::Compliance);
     for case in cases {
         let (design, pose) = (design(case), pose(case));
         let report = Model::default().pose(&design, &pose).expect("reachable");
@@ -111,7 +111,7 @@ fn designs_agree_on_both_grids_and_both_definitions() {
     let cases = cases["designs"].as_array().expect("designs");
     assert_eq!(cases.len(), 13);
     let model = Model::default();
-    let compliance = super::strategies::model(|settings| {
+    let compliance = strategies::model(|settings| {
         settings.stiffness_definition = StiffnessDefinition::Compliance;
     });
     for case in cases {
@@ -226,7 +226,7 @@ fn the_table_of_the_paper() {
     ];
     println!("design  mass paper/model [kg]   R_w paper / reference / fine grid [m]");
     for row in rows {
-        let design: Design = row.design.parse().expect("a design");
+        let design = parsed(row.design);
         let model = Model::default();
         let reference = model.evaluate(&design, GridChoice::Reference);
         let fine = model.evaluate(&design, GridChoice::Fine);

@@ -11,7 +11,7 @@ use kinefront_testkit::poses_of_region;
 use rayon::prelude::*;
 
 use super::regions::RANGES;
-use super::strategies;
+use super::strategies::{self, parsed};
 
 fn with_region(region: Region) -> Model {
     strategies::model(|settings| settings.workspace.region = region)
@@ -153,7 +153,7 @@ fn regions_are_proved_and_refuted() {
 /// corner it is: a proof that left a part of the region out, or a constraint, would.
 #[test]
 fn a_blind_proof_does_not_pass_an_infeasible_corner() {
-    let design: Design = "3-RRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06".parse().expect("a design");
+    let design = parsed("3-RRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06");
     for (name, corners) in [
         (
             "rectangle",
@@ -194,7 +194,7 @@ fn a_blind_proof_does_not_pass_an_infeasible_corner() {
 #[test]
 fn each_limit_ends_the_proof_of_a_region() {
     let region = || Region::Polygon(Polygon::rectangle(0.4, 0.3).expect("a rectangle"));
-    let design: Design = "3-PRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06".parse().expect("a design");
+    let design = parsed("3-PRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06");
     let phi_deg = with_region(region())
         .evaluate(&design, GridChoice::Fine)
         .home_phi_deg
@@ -257,7 +257,7 @@ fn boxes_lie_in_the_parts_of_the_region() {
             self.0.push(part.patch);
         }
     }
-    let design: Design = "3-PRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06".parse().expect("a design");
+    let design = parsed("3-PRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06");
     for (name, region) in regions() {
         let model = with_region(region);
         let claim = model.claim(&model.evaluate(&design, GridChoice::Fine)).expect("a home");

@@ -11,7 +11,7 @@ use kinefront_model::workspace::Region;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::strategies::{self, applicable_cases};
+use super::strategies::{self, applicable_cases, parsed};
 
 fn prescribed(region: Region) -> Model {
     strategies::model(|settings| settings.workspace.region = region)
@@ -164,13 +164,13 @@ fn reports_over_a_rectangle_are_the_least_of_its_poses() {
         "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03",
         "3-RRR R=1.2 r=0.4 Lb=1.1 rj=0.05 rp=0.05",
     ] {
-        examine(&model, &text.parse().expect("a design"), &corners);
+        examine(&model, &parsed(text), &corners);
     }
 }
 
 #[test]
 fn the_home_is_the_orientation_with_the_best_worst_margin() {
-    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03".parse().expect("a design");
+    let design = parsed("3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03");
     let free = prescribed(rectangle(0.5, 0.3));
     let found = free.evaluate(&design, GridChoice::Reference);
     let worst = |evaluation: &kinefront_model::evaluation::Evaluation| {
@@ -201,13 +201,13 @@ fn a_polygon_may_lie_beside_the_centre() {
     let polygon = Polygon::new(corners.to_vec()).expect("a triangle");
     assert_eq!(polygon.inscribed_radius(), 0.0);
     let model = prescribed(Region::Polygon(polygon));
-    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03".parse().expect("a design");
+    let design = parsed("3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03");
     examine(&model, &design, &corners);
 }
 
 #[test]
 fn a_region_out_of_reach_is_infeasible_by_more_than_one_that_is_too_soft() {
-    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.006 rp=0.006".parse().expect("a design");
+    let design = parsed("3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.006 rp=0.006");
     let violation = |region: Region| prescribed(region).evaluate(&design, GridChoice::Reference).violation;
     let (near, far) = (violation(Region::Disc(0.2)), violation(Region::Disc(5.0)));
     assert!(near > 0.0 && near < 1.0 && far > 1.0, "{near}, {far}");
@@ -246,7 +246,7 @@ fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
         "3-RRR R=1.2 r=0.4 Lb=1.1 rj=0.05 rp=0.05",
         "3-RPR R=1.4 r=0.3 Lb=1.9 rj=0.03 rp=0.03",
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let target = WorkspaceTarget::Prescribed(GridChoice::Reference);
         let sized = model.sized(&design, &RANGES, target).expect("bars");
         let found = model.evaluate(&sized, GridChoice::Reference);
@@ -287,7 +287,7 @@ fn the_lightest_pair_of_two_lists_is_the_one_found_by_trying_all() {
         "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03",
         "3-RRR R=1.2 r=0.4 Lb=1.1 rj=0.05 rp=0.05",
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let target = WorkspaceTarget::Prescribed(GridChoice::Reference);
         let sized = model.sized(&design, &ranges, target).expect("bars");
         let [base, platform, link, ..] = design.values();
@@ -335,7 +335,7 @@ fn directions_of_the_unit_circle_are_used_for_discs() {
         settings.workspace.region = Region::Disc(0.15);
         settings.workspace.centre = centre;
     });
-    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03".parse().expect("a design");
+    let design = parsed("3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03");
     let rim: Vec<DVec2> = (0..36)
         .map(|k| centre + unit(f64::from(k) * 10f64.to_radians()) * 0.15)
         .collect();
@@ -353,7 +353,7 @@ fn the_scale_of_a_sized_geometry_is_the_lightest() {
         "3-RRR R=0.9 r=0.2 Lb=1.0 rj=0.03 rp=0.03",
         "3-RPR R=1.0 r=0.1 Lb=1.4 rj=0.03 rp=0.03",
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let open = SizingRanges {
             scale: [0.05, 5.0],
             ..RANGES

@@ -13,7 +13,7 @@ use kinefront_testkit::repetitions;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::strategies::{bodies, clearance, design, limit_motion, model};
+use super::strategies::{bodies, clearance, design, limit_motion, model, parsed};
 
 /// Form of the stiffness that decides which poses are feasible.
 #[derive(Clone, Copy)]
@@ -248,9 +248,7 @@ proptest! {
 /// A given home orientation yields the radius of the window about it, which never exceeds that of the best window.
 #[test]
 fn a_given_home_is_kept() {
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     let best = Model::default().evaluate(&design, GridChoice::Reference);
     for (home, equal) in [(30.0, true), (-330.0, true), (20.0, false)] {
         let model = model(|settings| settings.workspace.home_phi_deg = Some(home));
@@ -279,7 +277,7 @@ fn lifting_the_active_constraint_enlarges_the_workspace() {
         ),
     ];
     for (text, constraint) in cases {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let before = Model::default().evaluate(&design, GridChoice::Fine);
         assert!(before.active().any(|active| active == constraint), "{text}");
         let eased = model(|settings| {
@@ -299,7 +297,7 @@ fn a_zero_radius_is_infeasible_and_finite() {
         "3-PRR R=3 r=1.2 Lb=1.9 rj=0 rp=0.05",
         "3-RRR R=3 r=1.2 Lb=1.9 rj=0.05 rp=0",
     ] {
-        let found = Model::default().evaluate(&text.parse().expect("a design"), GridChoice::Reference);
+        let found = Model::default().evaluate(&parsed(text), GridChoice::Reference);
         assert!(!found.is_feasible());
         assert!(found.mass() > 0.0 && found.violation > 0.0);
         assert_eq!(found.constraint(Constraint::StiffnessXy).value, Some(0.0));
@@ -320,7 +318,7 @@ fn sizes_beyond_measure_stay_finite() {
             (Model::default(), "R=1 r=1 Lb=1 rj=0.05 rp=0.05"),
             (far.clone(), "R=2 r=1 Lb=2 rj=0.05 rp=0.05"),
         ] {
-            let design: Design = format!("{architecture} {lengths}").parse().expect("a design");
+            let design = parsed(&format!("{architecture} {lengths}"));
             let found = model.evaluate(&design, GridChoice::Reference);
             assert!(
                 found.workspace_radius().is_finite() && found.violation.is_finite() && found.mass().is_finite(),
@@ -348,7 +346,7 @@ fn sizes_beyond_measure_stay_finite() {
 /// A workspace that is large compared with the base costs time, not memory.
 #[test]
 fn a_disc_of_many_base_radii_is_searched() {
-    let design: Design = "3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1".parse().expect("a design");
+    let design = parsed("3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1");
     let found = Model::default().evaluate(&design, GridChoice::Reference);
     assert!(
         found.workspace_radius() > 100.0 * design.base_radius(),

@@ -6,7 +6,7 @@ use kinefront_model::evaluation::{
 use kinefront_model::mechanism::{Design, DesignVariable, WorkingMode};
 use proptest::prelude::*;
 
-use crate::strategies::{applicable_cases, design};
+use crate::strategies::{self, applicable_cases, design, parsed};
 
 const RANGES: SizingRanges = SizingRanges {
     leg: [0.0, 0.1],
@@ -42,7 +42,7 @@ fn no_lighter_pair_of_radii_is_found_by_trying_all() {
         ("3-RPR R=1.5636 r=0.1006 Lb=2.2135 rj=0.017 rp=0.021", 0.54),
         ("3-RRR R=0.7 r=0.11 Lb=0.56 rj=0.03 rp=0.02", 0.45),
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let found = sized(&model, &design, WorkspaceTarget::Radius(target)).expect("there are such bars");
         let reached = radius(&model, &found);
         assert!(reached >= 0.995 * target, "{text}: {reached} instead of {target}");
@@ -85,7 +85,7 @@ fn bars_are_sized_for_a_natural_frequency() {
         ("3-RPR R=1.5636 r=0.1006 Lb=2.2135 rj=0.017 rp=0.021", 0.54),
         ("3-RRR R=0.7 r=0.11 Lb=0.56 rj=0.03 rp=0.02", 0.45),
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let limited_to = |frequency: Option<f64>| {
             let mut settings = ModelSettings {
                 quantities: [Quantity::Worst(FREQUENCY)].into_iter().collect(),
@@ -144,9 +144,7 @@ fn bars_are_sized_for_a_natural_frequency() {
 #[test]
 fn what_cannot_be_had_is_none() {
     let model = Model::default();
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     assert_eq!(
         sized(&model, &design, WorkspaceTarget::Radius(3.0)),
         None,
@@ -169,11 +167,11 @@ fn what_cannot_be_had_is_none() {
     );
     // The weakest pose of this design is at the centre.
     let text = "3-RPR R=1.5770 r=0.6257 Lb=1.22825 rj=0.0219 rp=0.0324";
-    let centre: Design = text.parse().expect("a design");
+    let centre = parsed(text);
     let found = sized(&model, &centre, WorkspaceTarget::Largest).expect("bars");
     assert!(radius(&model, &found) > 0.15);
     // Bars are also sized for an asymmetric working mode, a centre away from O and a given home orientation.
-    let model = super::strategies::model(|settings| {
+    let model = strategies::model(|settings| {
         settings.workspace.centre = glam::DVec2::new(0.1, -0.05);
         settings.workspace.home_phi_deg = Some(30.0);
     });

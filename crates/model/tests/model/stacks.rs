@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 use crate::clearance::Random;
-use crate::strategies::model;
+use crate::strategies::{model, parsed};
 use kinefront_testkit::oracle::distance_to_cylinder;
 use kinefront_testkit::repetitions;
 
@@ -187,9 +187,7 @@ fn joints_keep_their_distance() {
 /// Legs that cross in the plane do not collide in layers of their own, where the pins of their joints are bodies.
 #[test]
 fn legs_in_layers_of_their_own_may_cross() {
-    let design: Design = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018");
     let required = 0.004;
     let of = |stacking: Stacking| {
         model(|settings| {
@@ -215,16 +213,14 @@ fn legs_in_layers_of_their_own_may_cross() {
     let pair = evaluation.nearest.expect("a nearest pair").pair();
     assert!(pair.iter().any(|name| name.contains("joint")), "{pair:?}");
     // Where the common layers suffice, they are kept.
-    let apart: Design = "3-PRR R=4.0 r=2.12 Lb=3.3 rj=0.029 rp=0.073".parse().expect("a design");
+    let apart = parsed("3-PRR R=4.0 r=2.12 Lb=3.3 rj=0.029 rp=0.073");
     assert_eq!(chosen.stack_of(&apart), common.stack_of(&apart));
 }
 
 /// The clearance of a workspace in layers of their own is proved with the same heights as it is evaluated.
 #[test]
 fn a_workspace_in_chosen_layers_is_proved() {
-    let design: Design = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018");
     let model = model(|settings| {
         settings.thresholds.set(PoseScalar::Clearance, Some(0.004));
         settings.bodies.stacking = Stacking::Chosen;

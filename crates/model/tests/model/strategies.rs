@@ -27,6 +27,20 @@ pub fn model(change: impl FnOnce(&mut ModelSettings)) -> Model {
     Model::new(settings).expect("the grids fit the rotation range")
 }
 
+/// The design that a text states.
+pub fn parsed(text: &str) -> Design {
+    text.parse().expect("a design")
+}
+
+/// Rails of solid bars of a radius \[m\], which bend.
+pub fn round_rails(radius: f64, supports: RailSupports) -> Option<RailSettings> {
+    Some(RailSettings {
+        section: CrossSection::Round,
+        radius,
+        supports,
+    })
+}
+
 pub fn working_mode() -> impl Strategy<Value = WorkingMode> {
     any::<[bool; 3]>().prop_map(WorkingMode::new)
 }

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::legs::{design, settings};
 use super::reference::{fixture, number, pose};
-use super::strategies;
+use super::strategies::{self, parsed};
 
 fn section(value: &Value) -> CrossSection {
     let wall = || Wall::Ratio(number(&value["wall_ratio"]));
@@ -353,7 +353,7 @@ fn bars_are_sized_for_a_stress_that_they_just_keep() {
         ("3-RPR R=1.5636 r=0.1006 Lb=2.2135 rj=0.017 rp=0.021", 0.5),
         ("3-RRR R=0.7 r=0.11 Lb=0.56 rj=0.03 rp=0.02", 0.3),
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let sized = model
             .sized(&design, &ranges, WorkspaceTarget::Radius(radius))
             .expect("bars");
@@ -372,9 +372,7 @@ fn bars_are_sized_for_a_stress_that_they_just_keep() {
 
 #[test]
 fn a_limit_of_the_strength_bounds_the_workspace() {
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     let radius_of = |model: &Model| model.evaluate(&design, GridChoice::Reference).workspace_radius();
     let free = radius_of(&strategies::model(|_| {}));
     let bounded = limited(|_| {});
@@ -404,9 +402,7 @@ fn a_limit_of_the_strength_bounds_the_workspace() {
 fn what_does_not_exist_has_no_value() {
     let at_origin = Pose::new(0.0, 0.0, 0.3);
     let model = Model::default();
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     let report = |model: &Model, design: &Design, pose: &Pose| model.posed(design).strength_at(pose, None);
     let found = report(&model, &design, &at_origin)
         .expect("reachable")
