@@ -6,8 +6,8 @@ use kinefront_model::mechanism::{AnyLeg, Design, Leg, LegSettings, LockedKind, L
 use kinefront_model::spatial::Pose;
 use proptest::prelude::*;
 
-use super::legs::{cases, design as case_design, settings};
-use super::reference::{number, pose as case_pose};
+use super::legs::{cases, settings};
+use super::reference::{design as case_design, number, numbers, pose as case_pose};
 use super::strategies::{applicable_cases, design, leg_settings, pose};
 
 fn is_same(a: &Pose, b: &Pose, tolerance: f64) -> bool {
@@ -19,8 +19,7 @@ fn is_same(a: &Pose, b: &Pose, tolerance: f64) -> bool {
 fn modes_agree_with_an_independent_search() {
     for case in cases("poses") {
         let design = case_design(&case);
-        let values = [0, 1, 2].map(|leg| number(&case["actuators"][leg]));
-        let found = assembly_modes(&design, &settings(&case), values);
+        let found = assembly_modes(&design, &settings(&case), numbers(&case["actuators"]));
         let wanted: Vec<Pose> = case["assembly_modes"]
             .as_array()
             .expect("modes")

@@ -1,48 +1,24 @@
 //! Every chain and actuated joint, compared with values from an independent program (tests/fixtures/README.md).
 
-use kinefront_model::evaluation::{GridChoice, Model, ModelSettings, PoseScalar};
+use kinefront_model::evaluation::{GridChoice, Model, ModelSettings};
 use kinefront_model::kinematics::Jacobian;
-use kinefront_model::mechanism::{
-    AnyLeg, Architecture, Arrangement, Design, FURTHER_VARIABLES, LegSettings, Manipulator, WorkingMode,
-};
+use kinefront_model::mechanism::{AnyLeg, Architecture, Arrangement, LegSettings, Manipulator};
 use kinefront_model::stiffness::StiffnessDefinition;
 use serde_json::Value;
 
-use super::reference::{close, difference, fixture, matrix, number, pose};
+use super::reference::{cases_of, close, design, difference, matrix, number, numbers, pose, stiffness_values_agree};
 use super::strategies;
-
-fn three(value: &Value) -> [f64; 3] {
-    [0, 1, 2].map(|k| number(&value[k]))
-}
-
-pub fn design(case: &Value) -> Design {
-    let values = ["R", "r", "Lb", "rj", "rp"].map(|key| number(&case["design"][key]));
-    let architecture: Architecture = case["architecture"]
-        .as_str()
-        .expect("a name")
-        .parse()
-        .expect("an architecture");
-    let mode = WorkingMode::new(three(&case["working_mode"]).map(|sign| sign > 0.0));
-    let design = Design::new(architecture, mode, values).expect("a valid design");
-    FURTHER_VARIABLES.into_iter().fold(design, |design, variable| {
-        match case["design"][variable.key()].as_f64() {
-            Some(value) if architecture.has(variable) => design.with(variable, value).expect("a valid value"),
-            _ => design,
-        }
-    })
-}
 
 pub fn settings(case: &Value) -> LegSettings {
     let geometry = &case["geometry"];
-    let pair = |value: &Value| [number(&value[0]), number(&value[1])];
     LegSettings {
         geometry: Arrangement {
-            base_angles_deg: three(&geometry["base_angles_deg"]),
-            base_radii: three(&geometry["base_radii"]),
-            platform_angles_deg: three(&geometry["platform_angles_deg"]),
-            platform_radii: three(&geometry["platform_radii"]),
-            rail_turn_deg: three(&geometry["rail_turn_deg"]),
-            rail: pair(&geometry["rail"]),
+            base_angles_deg: numbers(&geometry["base_angles_deg"]),
+            base_radii: numbers(&geometry["base_radii"]),
+            platform_angles_deg: numbers(&geometry["platform_angles_deg"]),
+            platform_radii: numbers(&geometry["platform_radii"]),
+            rail_turn_deg: numbers(&geometry["rail_turn_deg"]),
+            rail: numbers(&geometry["rail"]),
             ..Arrangement::PAPER
         }
         .into(),
@@ -58,8 +34,7 @@ pub fn model(case: &Value, change: impl FnOnce(&mut ModelSettings)) -> Model {
 }
 
 pub fn cases(kind: &str) -> Vec<Value> {
-    let cases = fixture("legs_cases.json");
-    let cases = cases[kind].as_array().expect("cases").clone();
+    let cases = cases_of("legs_cases.json", kind);
     assert_eq!(cases.len(), 36);
     for &architecture in Architecture::ALL {
         let of_one = cases.iter().filter(|case| case["architecture"] == architecture.name());
@@ -119,20 +94,7 @@ fn stiffness_agrees() {
             model.stiffness_definition = StiffnessDefinition::Compliance
         });
         let free = compliant.pose(&design, &pose).expect("reachable").values;
-        for (value, key) in [
-            (report.values[PoseScalar::StiffnessXy], "k_xy"),
-            (report.values[PoseScalar::StiffnessZ], "k_z"),
-            (report.values[PoseScalar::StiffnessPhiZ], "k_phi_z"),
-            (free[PoseScalar::StiffnessXy], "k_xy_compliance"),
-            (free[PoseScalar::StiffnessZ], "k_z_compliance"),
-            (free[PoseScalar::StiffnessPhiZ], "k_phi_z_compliance"),
-        ] {
-            let wanted = number(&case[key]);
-            assert!(
-                (value / wanted - 1.0).abs() < 1e-8,
-                "{design}: {key} {value} instead of {wanted}"
-            );
-        }
+        stiffness_values_agree(&report.values, &free, &case, 1e-8, &design);
     }
 }
 

@@ -13,8 +13,8 @@ use kinefront_model::stiffness::{BarCompliance, RailSettings, RailSupports};
 use kinefront_testkit::numbers as random_numbers;
 use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX, SMatrix, Vector6};
 
-use super::legs::{cases, design, model as model_of};
-use super::reference::pose as pose_of;
+use super::legs::{cases, model as model_of};
+use super::reference::{design, pose as pose_of};
 
 const DRIVES: DriveInertia = DriveInertia {
     slider_mass: 1.5,

@@ -12,8 +12,8 @@ use kinefront_model::mechanism::{Architecture, Design, JointKind};
 use kinefront_model::spatial::Pose;
 use kinefront_testkit::{numbers as random_numbers, repetitions};
 
-use super::legs::{cases, design, model as model_of};
-use super::reference::pose as pose_of;
+use super::legs::{cases, model as model_of};
+use super::reference::{design, pose as pose_of};
 
 const TRAPEZOID: MotionLaw = MotionLaw::Trapezoid { blend: 0.3, ramp: 0.2 };
 

@@ -11,15 +11,22 @@ use kinefront_model::stiffness::joint_model;
 use proptest::prelude::*;
 use serde_json::Value;
 
-use super::reference::{close, design, difference, fixture, matrix, number, pose};
+use super::reference::{cases_of, close, design, difference, matrix, number, pose};
 use super::strategies::{self, applicable_cases, parsed};
 
-fn section(value: &Value) -> CrossSection {
-    let wall = Wall::Ratio(number(&value["wall_ratio"]));
-    match value["kind"].as_str() {
-        Some("tube") => CrossSection::Tube(wall),
-        Some("square_tube") => CrossSection::SquareTube(wall),
-        _ => CrossSection::Round,
+/// The cross-sections of a case.
+pub fn sections(case: &Value) -> CrossSections {
+    let section = |value: &Value| {
+        let wall = || Wall::Ratio(number(&value["wall_ratio"]));
+        match value["kind"].as_str() {
+            Some("tube") => CrossSection::Tube(wall()),
+            Some("square_tube") => CrossSection::SquareTube(wall()),
+            _ => CrossSection::Round,
+        }
+    };
+    CrossSections {
+        legs: section(&case["sections"]["legs"]),
+        platform: section(&case["sections"]["platform"]),
     }
 }
 
@@ -37,15 +44,10 @@ fn joint_form(model: &Model, design: &Design, pose: &Pose) -> nalgebra::Matrix6<
 
 #[test]
 fn hollow_bars_agree_with_the_finite_element_solver() {
-    let cases = fixture("sections.json");
-    let cases = cases["cases"].as_array().expect("cases");
+    let cases = cases_of("sections.json", "cases");
     assert_eq!(cases.len(), 12);
     for (index, case) in cases.iter().enumerate() {
-        let sections = CrossSections {
-            legs: section(&case["sections"]["legs"]),
-            platform: section(&case["sections"]["platform"]),
-        };
-        let model = model_with(sections);
+        let model = model_with(sections(case));
         let (design, pose) = (design(case), pose(case));
         close(model.mass(&design), number(&case["mass"]), 1e-12, "mass");
         let found = model.pose(&design, &pose).expect("reachable");

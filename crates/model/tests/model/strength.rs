@@ -3,29 +3,17 @@
 
 use kinefront_model::evaluation::{GridChoice, Model, PoseScalar, Quantity, SizingRanges, WorkspaceTarget};
 use kinefront_model::lanes::InstructionSet;
-use kinefront_model::mechanism::{CrossSection, CrossSections, Design, DesignVariable, Wall};
+use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_model::spatial::Pose;
-use kinefront_model::stiffness::{RailSettings, RailSupports};
+use kinefront_model::stiffness::RailSupports;
 use kinefront_model::strength::{LARGEST_FACTOR, LoadShape, Loads, StrengthReport};
 use kinefront_testkit::numbers as random_numbers;
 use serde_json::Value;
 
-use super::legs::{design, settings};
-use super::reference::{fixture, number, pose};
-use super::strategies::{self, parsed};
-
-fn section(value: &Value) -> CrossSection {
-    let wall = || Wall::Ratio(number(&value["wall_ratio"]));
-    match value["kind"].as_str() {
-        Some("tube") => CrossSection::Tube(wall()),
-        Some("square_tube") => CrossSection::SquareTube(wall()),
-        _ => CrossSection::Round,
-    }
-}
-
-fn numbers<const N: usize>(value: &Value) -> [f64; N] {
-    std::array::from_fn(|k| number(&value[k]))
-}
+use super::legs::settings;
+use super::reference::{cases_of, design, number, numbers, pose};
+use super::sections::sections;
+use super::strategies::{self, parsed, round_rails};
 
 fn model(case: &Value, loads: Loads) -> Model {
     strategies::model(|model| {
@@ -38,10 +26,7 @@ fn model(case: &Value, loads: Loads) -> Model {
         if let Some(shortest) = case.get("telescopic_shortest") {
             model.legs.telescopic_shortest = number(shortest);
         }
-        model.sections = CrossSections {
-            legs: section(&case["sections"]["legs"]),
-            platform: section(&case["sections"]["platform"]),
-        };
+        model.sections = sections(case);
         model.loads = loads;
     })
 }
@@ -80,7 +65,7 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// Asserts that the worst values of a report agree with the expected ones.
+/// Asserts that the forces of the drives and the worst values of a report agree with the expected ones.
 fn worst_values_agree(found: &StrengthReport, wanted: &Value, name: &str) {
     for (value, key, tolerance) in [
         (found.stress, "stress_max_pa", 1e-9),
@@ -90,6 +75,11 @@ fn worst_values_agree(found: &StrengthReport, wanted: &Value, name: &str) {
     ] {
         let wanted = number(&wanted[key]);
         agree(value, wanted, wanted, tolerance, &format!("{name}: {key}"));
+    }
+    let efforts: [f64; 3] = numbers(&wanted["actuators"]);
+    let most = largest(efforts.into_iter());
+    for (value, wanted) in found.actuators.into_iter().zip(efforts) {
+        agree(value, wanted, most, 1e-9, &format!("{name}: drive"));
     }
 }
 
@@ -112,49 +102,40 @@ fn stresses_forces_and_factors_agree() {
         let weighs = numbers::<3>(&case["gravity"]) != [0.0; 3];
         for (member, wanted) in found.members.iter().zip(members) {
             let what = |text: &str| format!("{name}: {text} of {}", wanted["name"]);
-            agree(
-                member.stress,
-                number(&wanted["stress_pa"]),
-                of("stress_pa"),
-                1e-9,
-                &what("stress"),
-            );
-            agree(
-                member.euler,
-                number(&wanted["euler_n"]),
-                of("euler_n"),
-                1e-9,
-                &what("Euler's load"),
-            );
-            let [inside, outside] = member.effective_lengths.expect("rigid rails");
             let (k_in, k_out) = (number(&wanted["k_in_plane"]), number(&wanted["k_out_of_plane"]));
-            agree(inside, k_in, k_in, 1e-8, &what("k in the plane"));
-            agree(outside, k_out, k_out, 1e-8, &what("k out of the plane"));
             let factor = number(&wanted["buckling_factor"]);
-            agree(
-                member.buckling_factor.expect("rigid rails"),
-                factor,
-                factor,
-                1e-8,
-                &what("factor"),
-            );
+            let [inside, outside] = member.effective_lengths.expect("rigid rails");
             let ends = |entry: usize| [&wanted["start"], &wanted["end"]].map(|end| number(&end[entry]));
-            let axial = ends(0);
-            let most = at_ends(0);
-            agree(
-                member.axial[0],
-                axial[0].min(axial[1]),
-                most,
-                1e-9,
-                &what("least axial force"),
-            );
-            agree(
-                member.axial[1],
-                axial[0].max(axial[1]),
-                most,
-                1e-9,
-                &what("largest axial force"),
-            );
+            let ([first, last], axial) = (ends(0), at_ends(0));
+            for (value, wanted, largest, tolerance, text) in [
+                (
+                    member.stress,
+                    number(&wanted["stress_pa"]),
+                    of("stress_pa"),
+                    1e-9,
+                    "stress",
+                ),
+                (
+                    member.euler,
+                    number(&wanted["euler_n"]),
+                    of("euler_n"),
+                    1e-9,
+                    "Euler's load",
+                ),
+                (inside, k_in, k_in, 1e-8, "k in the plane"),
+                (outside, k_out, k_out, 1e-8, "k out of the plane"),
+                (
+                    member.buckling_factor.expect("rigid rails"),
+                    factor,
+                    factor,
+                    1e-8,
+                    "factor",
+                ),
+                (member.axial[0], first.min(last), axial, 1e-9, "least axial force"),
+                (member.axial[1], first.max(last), axial, 1e-9, "largest axial force"),
+            ] {
+                agree(value, wanted, largest, tolerance, &what(text));
+            }
             for (value, entry, text) in [
                 (member.torsion, 3, "torsion"),
                 (member.moment_out_of_plane, 4, "moment out of the plane"),
@@ -170,25 +151,14 @@ fn stresses_forces_and_factors_agree() {
         let of = |key: &str| largest(joints.iter().map(|joint| number(&joint[key])));
         for (joint, wanted) in found.joints.iter().zip(joints) {
             let what = |text: &str| format!("{name}: {text} of {}", wanted["name"]);
-            for (value, key) in [
-                (joint.radial, "radial_n"),
-                (joint.axial, "axial_n"),
-                (joint.force, "force_n"),
+            for (value, key, largest) in [
+                (joint.radial, "radial_n", "force_n"),
+                (joint.axial, "axial_n", "force_n"),
+                (joint.force, "force_n", "force_n"),
+                (joint.moment, "moment_nm", "moment_nm"),
             ] {
-                agree(value, number(&wanted[key]), of("force_n"), 1e-9, &what(key));
+                agree(value, number(&wanted[key]), of(largest), 1e-9, &what(key));
             }
-            agree(
-                joint.moment,
-                number(&wanted["moment_nm"]),
-                of("moment_nm"),
-                1e-9,
-                &what("moment"),
-            );
-        }
-        let efforts: [f64; 3] = numbers(&wanted["actuators"]);
-        let most = largest(efforts.into_iter());
-        for (value, wanted) in found.actuators.into_iter().zip(efforts) {
-            agree(value, wanted, most, 1e-9, &format!("{name}: drive"));
         }
         worst_values_agree(&found, wanted, &name);
     }
@@ -214,25 +184,12 @@ fn the_worst_of_a_set_agrees() {
             let value = (-member.axial[0]).max(0.0);
             agree(value, number(compression), most, 1e-9, &format!("{name}: compression"));
         }
-        let efforts: [f64; 3] = numbers(&wanted["actuators"]);
-        for (value, wanted) in found.actuators.into_iter().zip(efforts) {
-            agree(
-                value,
-                wanted,
-                largest(efforts.into_iter()),
-                1e-9,
-                &format!("{name}: drive"),
-            );
-        }
         worst_values_agree(&found, wanted, &name);
     }
 }
 
 fn cases() -> Vec<Value> {
-    fixture("strength_cases.json")["cases"]
-        .as_array()
-        .expect("cases")
-        .clone()
+    cases_of("strength_cases.json", "cases")
 }
 
 fn under(case: &Value, loads: Loads) -> StrengthReport {
@@ -404,9 +361,12 @@ fn what_does_not_exist_has_no_value() {
     let model = Model::default();
     let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     let report = |model: &Model, design: &Design, pose: &Pose| model.posed(design).strength_at(pose, None);
-    let found = report(&model, &design, &at_origin)
-        .expect("reachable")
-        .expect("strength");
+    let of_bars = |model: &Model| {
+        report(model, &design, &at_origin)
+            .expect("reachable")
+            .expect("strength")
+    };
+    let found = of_bars(&model);
     assert_eq!(found.safety_factor, None);
     let at_pose = model.pose(&design, &at_origin).expect("reachable").values;
     assert_eq!(at_pose.get(PoseScalar::SafetyFactor), None);
@@ -418,16 +378,8 @@ fn what_does_not_exist_has_no_value() {
     assert_eq!(report(&model, &thin, &at_origin).expect("reachable"), None);
     assert!(report(&model, &design, &Pose::new(9.0, 0.0, 0.0)).is_err());
     // On rails that bend, the share of the rails in buckling is not known.
-    let on_rails = strategies::model(|settings| {
-        settings.rails = Some(RailSettings {
-            section: CrossSection::Round,
-            radius: 0.03,
-            supports: RailSupports::Pinned,
-        });
-    });
-    let found = report(&on_rails, &design, &at_origin)
-        .expect("reachable")
-        .expect("strength");
+    let on_rails = strategies::model(|settings| settings.rails = round_rails(0.03, RailSupports::Pinned));
+    let found = of_bars(&on_rails);
     assert_eq!(
         (found.buckling_factor, found.members[0].effective_lengths),
         (None, None)
@@ -440,9 +392,7 @@ fn what_does_not_exist_has_no_value() {
             ..Loads::default().with_wrench([0.0; 6])
         };
     });
-    let found = report(&idle, &design, &at_origin)
-        .expect("reachable")
-        .expect("strength");
+    let found = of_bars(&idle);
     assert_eq!(
         (found.stress, found.joint_force, found.buckling_factor),
         (0.0, 0.0, Some(LARGEST_FACTOR))
