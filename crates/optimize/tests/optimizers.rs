@@ -153,17 +153,29 @@ fn with_and_without_learning() -> [FrontDeSettings; 2] {
     [settings, FrontDeSettings { learned, ..settings }]
 }
 
+/// Asserts that a search repeats itself, and that learning leaves out little of the front: less than a share of it, and than a share of what is
+/// missing without learning.
+fn assert_learned(
+    problem: &impl Problem,
+    evaluations: usize,
+    seed: u64,
+    missing: fn(&Archive) -> f64,
+    [most, share]: [f64; 2],
+) {
+    let [settings, unlearned] = with_and_without_learning();
+    let search = |settings| run(problem, &mut FrontDe::for_problem(problem, settings, seed), evaluations);
+    assert_eq!(search(settings), search(settings));
+    let [learned, without] = [settings, unlearned].map(|settings| missing(&search(settings)));
+    assert!(
+        learned < most && learned < share * without,
+        "seed {seed}: {learned} is missing, and {without} without learning"
+    );
+}
+
 #[test]
 fn a_front_is_learned_where_the_problem_determines_variables() {
-    let [settings, unlearned] = with_and_without_learning();
     for seed in 1..=5 {
-        let search = |settings| run(&Frame, &mut FrontDe::for_problem(&Frame, settings, seed), 600);
-        assert_eq!(search(settings), search(settings));
-        let [learned, without] = [settings, unlearned].map(|settings| Frame::missing(&search(settings)));
-        assert!(
-            learned < 0.005 && learned < 0.6 * without,
-            "seed {seed}: {learned} is missing, and {without} without learning"
-        );
+        assert_learned(&Frame, 600, seed, Frame::missing, [0.005, 0.6]);
     }
 }
 
@@ -215,14 +227,8 @@ impl Problem for Table {
 
 #[test]
 fn a_front_without_levels_is_learned_too() {
-    let [settings, unlearned] = with_and_without_learning();
     for seed in 1..=5 {
-        let search = |settings| run(&Table, &mut FrontDe::for_problem(&Table, settings, seed), 400);
-        let [learned, without] = [settings, unlearned].map(|settings| Table::missing(&search(settings)));
-        assert!(
-            learned < 0.01 && learned < 0.8 * without,
-            "seed {seed}: {learned} is missing, and {without} without learning"
-        );
+        assert_learned(&Table, 400, seed, Table::missing, [0.01, 0.8]);
     }
 }
 

@@ -2,7 +2,9 @@
 
 use std::cell::OnceCell;
 
-use kinefront_model::evaluation::{Better, MarginUnit, ModelSettings, PoseScalar, PoseScalars, Quantity};
+use kinefront_model::evaluation::{
+    Better, MarginUnit, ModelSettings, PoseScalar, PoseScalars, Quantity, QuantityLimit,
+};
 use kinefront_model::mechanism::MemberKind;
 use nalgebra::{DMatrix, DVector};
 
@@ -62,11 +64,7 @@ impl Requirement {
             Requirement::EndOfReach { .. } => "end of the reach of a leg".to_owned(),
             Requirement::Scalar(scalar) => scalar.entry().quantity.label.to_owned(),
             Requirement::Determinant => "distance to singularities".to_owned(),
-            Requirement::Quantity(place) => problem.question().settings.limits[place]
-                .quantity
-                .entry()
-                .label
-                .to_owned(),
+            Requirement::Quantity(place) => limit(problem, place).quantity.entry().label.to_owned(),
             Requirement::Base => "footprint of the base".to_owned(),
             Requirement::Assembly => "assembly".to_owned(),
         }
@@ -82,15 +80,16 @@ impl Requirement {
             Requirement::EndOfReach { leg } => format!("reach_and_limits:end_of_reach:leg{}", leg + 1),
             Requirement::Scalar(scalar) => threshold_name(scalar).to_owned(),
             Requirement::Determinant => "determinant_sign".to_owned(),
-            Requirement::Quantity(place) => problem.question().settings.limits[place]
-                .quantity
-                .entry()
-                .key
-                .to_owned(),
+            Requirement::Quantity(place) => limit(problem, place).quantity.entry().key.to_owned(),
             Requirement::Base => "footprint_m:base".to_owned(),
             Requirement::Assembly => "assembly".to_owned(),
         }
     }
+}
+
+/// Returns a limit of the problem that is none of poses.
+fn limit(problem: &LocalProblem, place: usize) -> &QuantityLimit {
+    &problem.question().settings.limits[place]
 }
 
 impl LocalProblem {
@@ -110,7 +109,7 @@ impl LocalProblem {
             }
             Requirement::Base => self.footprint_beyond_base(prepared),
             Requirement::Quantity(index) if !requirement.is_of_poses(self) => {
-                let limit = &self.question().settings.limits[index];
+                let limit = limit(self, index);
                 self.excess_of_quantity(prepared, limit).unwrap_or(NOWHERE)
             }
             Requirement::Scalar(_) | Requirement::Determinant | Requirement::Quantity(_) => {
@@ -133,7 +132,7 @@ impl LocalProblem {
                 Some(libm::log(self.limit(prepared, PoseScalar::Footprint) / farthest))
             }
             Requirement::Quantity(index) => {
-                let limit = &self.question().settings.limits[index];
+                let limit = limit(self, index);
                 (limit.quantity == Quantity::Worst(PoseScalar::Footprint)).then(|| excess(farthest, limit))
             }
             _ => None,
@@ -171,7 +170,7 @@ impl LocalProblem {
             }
             Requirement::Determinant => value(PoseScalar::Determinant) * self.sign(prepared),
             Requirement::Quantity(index) => {
-                let limit = &self.question().settings.limits[index];
+                let limit = limit(self, index);
                 match limit.quantity {
                     Quantity::Worst(scalar) => excess(value(scalar), limit),
                     _ => NOWHERE,
@@ -194,10 +193,10 @@ impl LocalProblem {
     /// Returns the values of critical requirements at their places for some unknowns.
     pub(crate) fn values_of(&self, unknowns: &[f64], critical: &[Critical]) -> Vec<f64> {
         match self.prepare(unknowns) {
-            Some(prepared) => critical
-                .iter()
-                .map(|critical| self.value(&prepared, critical.requirement, &critical.place))
-                .collect(),
+            Some(prepared) => {
+                let value = |critical: &Critical| self.value(&prepared, critical.requirement, &critical.place);
+                critical.iter().map(value).collect()
+            }
             None => vec![NOWHERE; critical.len()],
         }
     }

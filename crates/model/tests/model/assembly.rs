@@ -6,6 +6,7 @@ use kinefront_model::mechanism::{AnyLeg, Design, Leg, LegSettings, LockedKind, L
 use kinefront_model::spatial::Pose;
 use proptest::prelude::*;
 
+use super::joints::actuators;
 use super::legs::{cases, settings};
 use super::reference::{design as case_design, number, numbers, pose as case_pose};
 use super::strategies::{applicable_cases, design, leg_settings, pose};
@@ -100,10 +101,7 @@ fn a_manipulator_with_six_modes() {
 }
 
 fn values(design: &Design, settings: &LegSettings, pose: &Pose) -> Option<[f64; 3]> {
-    let manipulator = Manipulator::<AnyLeg>::new(design, settings);
-    let posture = manipulator.posture(pose).ok()?;
-    let driven = design.architecture().driven();
-    Some([0, 1, 2].map(|i| manipulator.legs[i].joint_values(&posture.legs[i])[driven]))
+    actuators(design, &Manipulator::<AnyLeg>::new(design, settings), pose)
 }
 
 proptest! {

@@ -14,9 +14,13 @@ use kinefront_testkit::oracle::{Fault, Found, distance_to_cylinder, distance_to_
 use kinefront_testkit::repetitions;
 
 /// Generator of random numbers within a range.
-pub struct Random(pub ChaCha8Rng);
+pub struct Random(ChaCha8Rng);
 
 impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -93,7 +97,7 @@ fn in_lanes(model: &Model, design: &Design, pose: &Pose) -> Option<f64> {
 /// Compares random poses of random designs; returns the number of poses with an overlap and, for each fault of the
 /// oracle, the number of poses at which it is detected.
 fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize, Vec<usize>) {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(7));
+    let mut random = Random::new(7);
     let (mut done, mut overlapping, mut shown) = (0, 0, vec![0; faults.len()]);
     while done < poses {
         let (settings, design) = random.subject(architecture);
@@ -203,7 +207,7 @@ const TOLERANCE: f64 = 1e-5;
 /// Obstacles keep the distance that a library measures in space, and the name of the nearest one is told.
 #[test]
 fn obstacles_are_as_far_as_a_library_measures() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(13));
+    let mut random = Random::new(13);
     let (mut nearest, mut overlapping) = ([0; 3], 0);
     for round in 0..6000 {
         let architecture = Architecture::ALL[round % Architecture::ALL.len()];
@@ -328,7 +332,7 @@ fn the_room_is_not_left() {
 /// Bars thickened until they touch have zero clearance, and bars thickened further overlap by the excess.
 #[test]
 fn touching_is_zero() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(11));
+    let mut random = Random::new(11);
     for &architecture in Architecture::ALL {
         let mut touched = 0;
         let (tries, least) = if Architecture::PAPER.contains(&architecture) {

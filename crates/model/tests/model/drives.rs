@@ -1,13 +1,11 @@
 //! The drive that a design selects is the lightest one that carries its motion, as each drive by itself tells it.
 
 use kinefront_model::dynamics::{Drive, DriveCatalogue, MotionLaw, Task, TaskShape, TaskTiming};
-use kinefront_model::evaluation::{
-    Bound, GridChoice, Model, ModelSettings, Quantity, QuantityLimit, TaskFigures, largest_of_legs,
-};
+use kinefront_model::evaluation::{GridChoice, Model, ModelSettings, Quantity, TaskFigures, largest_of_legs};
 use kinefront_model::mechanism::{Design, JointKind, JointMasses};
 use kinefront_testkit::numbers as random_numbers;
 
-use super::strategies::parsed;
+use super::strategies::{at_most, parsed};
 
 /// Designs with motors on the base, at the elbow and at the platform, that slide and that turn.
 const DESIGNS: [&str; 6] = [
@@ -36,10 +34,7 @@ fn settings() -> ModelSettings {
             samples: 60,
             timing: TaskTiming::Cycle(3.0),
         }),
-        limits: vec![QuantityLimit {
-            quantity: Quantity::DriveUtilization,
-            bound: Bound::AtMost(1.0),
-        }],
+        limits: vec![at_most(Quantity::DriveUtilization, 1.0)],
         quantities: [Quantity::DriveMass, Quantity::DriveUtilization].into_iter().collect(),
         ..ModelSettings::default()
     };
@@ -74,6 +69,23 @@ fn utilization(drive: &Drive, figures: &TaskFigures) -> f64 {
     shares.into_iter().fold(0.0, f64::max)
 }
 
+/// Drives of any size, of which a quarter are of the other kind.
+fn random_drives(random: &mut impl FnMut() -> f64, kind: JointKind, force: f64, speed: f64) -> DriveCatalogue {
+    let drive = |place: usize| {
+        let size = 0.05 + 3.0 * random() * random();
+        Drive {
+            name: format!("drive {place}"),
+            kind: if place % 4 == 3 { other(kind) } else { kind },
+            rated: force * size,
+            peak: force * size * (1.5 + random()),
+            speed: speed * (0.8 + random()),
+            inertia: 3.0 * size * random(),
+            mass: 0.2 + 10.0 * size * random(),
+        }
+    };
+    DriveCatalogue::new((0..12).map(drive).collect()).expect("a catalogue")
+}
+
 #[test]
 fn the_lightest_drive_that_carries_the_motion_is_selected() {
     let mut random = random_numbers(7);
@@ -89,26 +101,10 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
             let weakness = if round == 3 { 0.05 } else { 1.0 };
             // The study may leave a reserve.
             let allowed = if round == 1 || round == 2 { 0.8 } else { 1.0 };
-            let mut drives = Vec::new();
-            for place in 0..12 {
-                let size = 0.05 + 3.0 * random() * random();
-                drives.push(Drive {
-                    name: format!("drive {place}"),
-                    kind: if place % 4 == 3 { other(kind) } else { kind },
-                    rated: weakness * force * size,
-                    peak: weakness * force * size * (1.5 + random()),
-                    speed: speed * (0.8 + random()),
-                    inertia: 3.0 * size * random(),
-                    mass: 0.2 + 10.0 * size * random(),
-                });
-            }
-            let catalogue = DriveCatalogue::new(drives).expect("a catalogue");
+            let catalogue = random_drives(&mut random, kind, weakness * force, speed);
             let model = Model::new(ModelSettings {
                 drive_catalogue: catalogue.clone(),
-                limits: vec![QuantityLimit {
-                    quantity: Quantity::DriveUtilization,
-                    bound: Bound::AtMost(allowed),
-                }],
+                limits: vec![at_most(Quantity::DriveUtilization, allowed)],
                 ..settings()
             })
             .expect("a model");
@@ -186,10 +182,6 @@ fn other(kind: JointKind) -> JointKind {
 /// In the shortest cycle all limits are kept, and a cycle that is a little shorter misses the one that sets it.
 #[test]
 fn the_shortest_cycle_just_keeps_the_limits() {
-    let limit = |quantity: Quantity, most: f64| QuantityLimit {
-        quantity,
-        bound: Bound::AtMost(most),
-    };
     let mut set_by = Vec::new();
     for text in DESIGNS {
         let design = parsed(text);
@@ -201,15 +193,15 @@ fn the_shortest_cycle_just_keeps_the_limits() {
         let (now, _) = alone(&design, &light(design.architecture().actuator()));
         let at = [now.peak_speed, now.peak_force].map(largest_of_legs);
         for limits in [
-            vec![limit(speed, 0.6 * at[0])],
+            vec![at_most(speed, 0.6 * at[0])],
             vec![
-                limit(speed, 4.0 * at[0]),
-                limit(force, 3.0 * at[1]),
-                limit(Quantity::CornerPower, 2.0 * at[0] * at[1]),
+                at_most(speed, 4.0 * at[0]),
+                at_most(force, 3.0 * at[1]),
+                at_most(Quantity::CornerPower, 2.0 * at[0] * at[1]),
             ],
             vec![
-                limit(Quantity::CycleEnergy, 1.5 * now.energy_shared),
-                limit(speed, 20.0 * at[0]),
+                at_most(Quantity::CycleEnergy, 1.5 * now.energy_shared),
+                at_most(speed, 20.0 * at[0]),
             ],
         ] {
             let with = |time: f64| {
@@ -235,7 +227,7 @@ fn the_shortest_cycle_just_keeps_the_limits() {
             assert!(missed < 0.0, "{design}: {shortest:?} could be shorter: {missed}");
         }
         // Without a limit there is no shortest cycle, and none keeps a force below the one that gravity asks for.
-        for limits in [Vec::new(), vec![limit(force, 1e-3)]] {
+        for limits in [Vec::new(), vec![at_most(force, 1e-3)]] {
             let mut settings = settings();
             settings.limits = limits;
             let model = Model::new(settings).expect("a model");

@@ -174,17 +174,14 @@ fn task(value: &Value) -> Task {
             "pick_and_place" => TaskShape::PickAndPlace {
                 swing: or("swing_deg", 0.0).to_radians(),
             },
-            _ => TaskShape::Waypoints(
-                value["waypoints"]
-                    .as_array()
-                    .expect("points")
-                    .iter()
-                    .map(|point| {
-                        let [x, y, phi_deg] = numbers(point);
-                        [x, y, f64::to_radians(phi_deg)]
-                    })
-                    .collect(),
-            ),
+            _ => {
+                let point = |point: &Value| {
+                    let [x, y, phi_deg] = numbers(point);
+                    [x, y, f64::to_radians(phi_deg)]
+                };
+                let points = value["waypoints"].as_array().expect("points").iter();
+                TaskShape::Waypoints(points.map(point).collect())
+            }
         },
         share: or("share", 0.8),
         angle: or("angle_deg", 0.0).to_radians(),

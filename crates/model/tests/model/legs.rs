@@ -49,37 +49,29 @@ fn kinematics_agree() {
         let (design, pose) = (design(&case), pose(&case));
         let manipulator = Manipulator::<AnyLeg>::new(&design, &settings(&case));
         let posture = manipulator.posture(&pose).expect("reachable");
-        let what = |text: &str| format!("{design}: {text}");
+        let agree = |value: f64, wanted: &Value, text: &str| {
+            close(value, number(wanted), 1e-9, &format!("{design}: {text}"));
+        };
         for (index, leg) in posture.legs.iter().enumerate() {
             let values = manipulator.legs[index].joint_values(leg);
             for (joint, value) in values.into_iter().enumerate() {
-                close(value, number(&case["joints"][index][joint]), 1e-9, &what("joint"));
+                agree(value, &case["joints"][index][joint], "joint");
             }
             let driven = values[design.architecture().driven()];
-            close(driven, number(&case["actuators"][index]), 1e-9, &what("actuator"));
+            agree(driven, &case["actuators"][index], "actuator");
             for (point, key) in [(leg.chain.b, "B"), (leg.chain.c, "C")] {
-                close(point.x, number(&case[key][index][0]), 1e-9, &what(key));
-                close(point.y, number(&case[key][index][1]), 1e-9, &what(key));
+                agree(point.x, &case[key][index][0], key);
+                agree(point.y, &case[key][index][1], key);
             }
             let row = [leg.u.x, leg.u.y, leg.moment];
             for (column, value) in row.into_iter().enumerate() {
-                close(value, number(&case["A_rows"][index][column]), 1e-9, &what("row of A"));
+                agree(value, &case["A_rows"][index][column], "row of A");
             }
-            close(leg.transmission, number(&case["B_ii"][index]), 1e-9, &what("B"));
+            agree(leg.transmission, &case["B_ii"][index], "B");
         }
-        close(
-            posture.limit_margin,
-            number(&case["slack"]),
-            1e-9,
-            &what("limit margin"),
-        );
+        agree(posture.limit_margin, &case["slack"], "limit margin");
         let condition = Jacobian::new(&posture).inverse_condition(design.platform_radius());
-        close(
-            condition,
-            number(&case["inverse_condition"]),
-            1e-9,
-            &what("inverse condition"),
-        );
+        agree(condition, &case["inverse_condition"], "inverse condition");
     }
 }
 

@@ -5,7 +5,7 @@ mod elements;
 mod frame;
 
 use glam::DVec2;
-use kinefront_model::dynamics::{DriveInertia, DynamicsSettings, Motion, Payload};
+use kinefront_model::dynamics::{DriveInertia, DynamicsReport, DynamicsSettings, Motion, Payload};
 use kinefront_model::evaluation::{Model, PoseScalar};
 use kinefront_model::mechanism::{
     AnyLeg, Architecture, BarLength, CrossSection, Design, JointKind, LegPart, Manipulator, MemberKind,
@@ -18,13 +18,13 @@ use super::legs::{cases, model as model_of};
 use super::reference::{design, pose as pose_of};
 use super::strategies::{self, parsed, round_rails};
 
-const DRIVES: DriveInertia = DriveInertia {
+pub const DRIVES: DriveInertia = DriveInertia {
     slider_mass: 1.5,
     prismatic: 0.7,
     revolute: 0.3,
 };
 
-const PAYLOAD: Payload = Payload {
+pub const PAYLOAD: Payload = Payload {
     mass: 4.0,
     inertia: 0.2,
     centre: [0.11, -0.07],
@@ -195,15 +195,14 @@ impl Subject {
         energy
     }
 
-    fn rigid_mass(&self, pose: &Pose) -> [[f64; 3]; 3] {
+    fn report_at(&self, pose: &Pose) -> DynamicsReport {
         let posed = self.model.posed(&self.design);
-        posed
-            .dynamics_at(pose)
-            .expect("reached")
-            .expect("stiff")
-            .report()
-            .expect("regular")
-            .rigid_mass
+        let dynamics = posed.dynamics_at(pose).expect("reached").expect("stiff");
+        dynamics.report().expect("regular")
+    }
+
+    fn rigid_mass(&self, pose: &Pose) -> [[f64; 3]; 3] {
+        self.report_at(pose).rigid_mass
     }
 
     /// What the platform needs in all for a motion, from the forces of the actuators.

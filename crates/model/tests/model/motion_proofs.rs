@@ -2,18 +2,18 @@
 
 use glam::DVec2;
 use kinefront_model::certify::{MotionClaim, MotionVerdict};
-use kinefront_model::dynamics::{
-    DriveInertia, DynamicsSettings, MotionLaw, Payload, Task, TaskFrame, TaskShape, TaskTiming,
-};
+use kinefront_model::dynamics::{DynamicsSettings, MotionLaw, Task, TaskFrame, TaskShape, TaskTiming};
 use kinefront_model::evaluation::{
-    Bound, Model, PoseScalar, Quantity, QuantityLimit, TaskFigures, TaskOutcome, largest_of_legs,
+    Model, ModelSettings, PoseScalar, Quantity, TaskFigures, TaskOutcome, largest_of_legs,
 };
 use kinefront_model::mechanism::{Architecture, Design, JointKind};
 use kinefront_model::spatial::Pose;
 use kinefront_testkit::{numbers as random_numbers, repetitions};
 
 use super::legs::{cases, model as model_of};
+use super::motion::{DRIVES, PAYLOAD};
 use super::reference::{design, pose as pose_of};
+use super::strategies::at_most;
 
 const TRAPEZOID: MotionLaw = MotionLaw::Trapezoid { blend: 0.3, ramp: 0.2 };
 
@@ -51,18 +51,10 @@ fn follow(model: &Model, design: &Design, task: &Task, frame: &TaskFrame) -> Tas
     model.posed(design).follow(task, frame).0
 }
 
-fn moving(model: &mut kinefront_model::evaluation::ModelSettings) {
+fn moving(model: &mut ModelSettings) {
     model.dynamics = DynamicsSettings {
-        payload: Payload {
-            mass: 4.0,
-            inertia: 0.2,
-            centre: [0.11, -0.07],
-        },
-        drives: DriveInertia {
-            slider_mass: 1.5,
-            prismatic: 0.7,
-            revolute: 0.3,
-        },
+        payload: PAYLOAD,
+        drives: DRIVES,
         gravity: [0.0, -9.81, 0.0],
         tool: [20.0, -10.0, 3.0],
         ..DynamicsSettings::default()
@@ -79,8 +71,8 @@ fn for_all(mut check: impl FnMut(&Model, &Design, &Pose, f64)) {
             let model = model_of(case, moving);
             let found = model.pose(&design, &pose).ok()?;
             let clear = (found.values[PoseScalar::Reach] / design.base_radius()).min(0.05);
-            let is_other = design.architecture() != architecture;
-            (!is_other).then(|| (clear.min(found.values[PoseScalar::Dexterity]), model, design, pose))
+            (design.architecture() == architecture)
+                .then(|| (clear.min(found.values[PoseScalar::Dexterity]), model, design, pose))
         });
         let best = poses.max_by(|a, b| a.0.total_cmp(&b.0));
         let (_, model, design, pose) = best.unwrap_or_else(|| panic!("no pose of {}", architecture.name()));
@@ -163,10 +155,7 @@ fn what_happens_between_the_samples_is_found() {
         let peak = largest_of_legs(fine.figures().expect("figures").peak_speed);
         for (limit, is_kept) in [(0.999 * peak, false), (1.001 * peak, true)] {
             let mut settings = model.settings().clone();
-            settings.limits = vec![QuantityLimit {
-                quantity,
-                bound: Bound::AtMost(limit),
-            }];
+            settings.limits = vec![at_most(quantity, limit)];
             let limited = Model::new(settings).expect("a model");
             let outcome = follow(&limited, design, &rough, &frame);
             let found = limited.certify_motion(design, &outcome).expect("a motion");

@@ -109,12 +109,8 @@ fn poses_agree_with_the_finite_element_solver() {
                 close(report.c[leg][axis], number(&case["C"][leg][axis]), 1e-9, "C");
             }
         }
-        close(
-            report.values[PoseScalar::Dexterity],
-            number(&case["inverse_condition"]),
-            1e-9,
-            "inverse condition",
-        );
+        let condition = report.values[PoseScalar::Dexterity];
+        close(condition, number(&case["inverse_condition"]), 1e-9, "inverse condition");
         let off = difference(&report.stiffness, &matrix(&case["stiffness_matrix"]));
         assert!(off < 1e-7, "{design} at {pose:?}: stiffness off by {off:e}");
         let soft = compliance.pose(&design, &pose).expect("reachable").values;

@@ -50,10 +50,13 @@ fn regions() -> Vec<(&'static str, Region)> {
 fn sized(model: &Model, architecture: Architecture, increase: f64) -> Option<Design> {
     let start = Design::new(architecture, WorkingMode::new([true; 3]), [1.5, 0.4, 1.2, 0.03, 0.03]).expect("a design");
     let found = model.sized(&start, &RANGES, WorkspaceTarget::Prescribed(GridChoice::Reference))?;
-    let factor = 1.0 + increase;
-    let mut values = found.values();
+    with_thicker_bars(&found, 1.0 + increase)
+}
+
+fn with_thicker_bars(design: &Design, factor: f64) -> Option<Design> {
+    let mut values = design.values();
     values[3..].iter_mut().for_each(|radius| *radius *= factor);
-    found.with_dimensions(values).ok()
+    design.with_dimensions(values).ok()
 }
 
 fn proof(model: &Model, design: &Design, phi_deg: f64) -> Certificate {
@@ -119,11 +122,7 @@ fn regions_are_proved_and_refuted() {
                 assert_eq!(found.lower, inscribed);
             }
             // The home orientation of the design may leave room for bars that are a little thinner.
-            let thin_by = |factor: f64| {
-                let mut values = design.values();
-                values[3..].iter_mut().for_each(|radius| *radius *= factor);
-                design.with_dimensions(values).expect("a design")
-            };
+            let thin_by = |factor: f64| with_thicker_bars(&design, factor).expect("a design");
             let thin = [0.99, 0.9, 0.5].map(thin_by).into_iter().find(|thin| {
                 let poses = random_poses(&model, phi_deg, 500);
                 poses.iter().any(|pose| least_margin(&model, thin, pose) < 0.0)

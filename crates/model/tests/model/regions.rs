@@ -11,7 +11,7 @@ use kinefront_model::workspace::Region;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::strategies::{self, applicable_cases, parsed};
+use super::strategies::{self, applicable_cases, bar_ranges, parsed};
 
 fn prescribed(region: Region) -> Model {
     strategies::model(|settings| settings.workspace.region = region)
@@ -230,13 +230,7 @@ fn corners_that_are_no_polygon_are_refused() {
     assert!(concave.contains(DVec2::new(1.0, 0.4)) && !concave.contains(DVec2::new(1.0, 0.6)));
 }
 
-pub const RANGES: SizingRanges = SizingRanges {
-    leg: [0.0, 0.1],
-    platform: [0.0, 0.1],
-    listed: [None, None],
-    is_exact: true,
-    scale: [1.0; 2],
-};
+pub const RANGES: SizingRanges = bar_ranges(true);
 
 #[test]
 fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
@@ -280,8 +274,7 @@ fn the_lightest_pair_of_two_lists_is_the_one_found_by_trying_all() {
         leg: [radii[0], radii[7]],
         platform: [radii[0], radii[7]],
         listed: [Some(radii.clone()), Some(radii.clone())],
-        is_exact: true,
-        scale: [1.0; 2],
+        ..RANGES
     };
     for text in [
         "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03",

@@ -6,15 +6,9 @@ use kinefront_model::evaluation::{
 use kinefront_model::mechanism::{Design, DesignVariable, WorkingMode};
 use proptest::prelude::*;
 
-use crate::strategies::{self, applicable_cases, design, parsed};
+use crate::strategies::{self, applicable_cases, bar_ranges, design, parsed};
 
-const RANGES: SizingRanges = SizingRanges {
-    leg: [0.0, 0.1],
-    platform: [0.0, 0.1],
-    listed: [None, None],
-    is_exact: false,
-    scale: [1.0; 2],
-};
+const RANGES: SizingRanges = bar_ranges(false);
 
 fn sized(model: &Model, design: &Design, target: WorkspaceTarget) -> Option<Design> {
     model.sized(design, &RANGES, target)
@@ -153,9 +147,7 @@ fn what_cannot_be_had_is_none() {
     let thin = SizingRanges {
         leg: [0.0, 0.01],
         platform: [0.0, 0.01],
-        listed: [None, None],
-        is_exact: false,
-        scale: [1.0; 2],
+        ..RANGES
     };
     let found = model.sized(&design, &thin, WorkspaceTarget::Radius(1.0));
     assert_eq!(found, None, "the ranges of the bars do not allow the radius");

@@ -7,8 +7,6 @@ use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
 use kinefront_model::mechanism::{
     AnyLeg, Architecture, CylinderSize, Design, JointKind, JointPoint, JointSizes, Manipulator, MemberKind,
 };
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 
 use crate::clearance::Random;
 use crate::strategies::{model, parsed};
@@ -110,7 +108,7 @@ fn between(a: &Cylinder, b: &Cylinder) -> f64 {
 /// The clearance at random poses is the least distance of capsules and upright cylinders that a library finds.
 #[test]
 fn joints_keep_their_distance() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(5));
+    let mut random = Random::new(5);
     for &architecture in Architecture::ALL {
         let (mut compared, mut decisive) = (0, 0);
         for _ in 0..repetitions(4000, 100_000) {

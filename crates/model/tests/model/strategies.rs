@@ -2,7 +2,7 @@
 
 use kinefront_model::clearance::{BodySettings, Layers};
 use kinefront_model::dynamics::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};
-use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar};
+use kinefront_model::evaluation::{Bound, Model, ModelSettings, PoseScalar, Quantity, QuantityLimit, SizingRanges};
 use kinefront_model::mechanism::{
     Architecture, Arrangement, BarLength, CrossSection, Design, FURTHER_VARIABLES, LegSettings, Wall, WorkingMode,
 };
@@ -30,6 +30,23 @@ pub fn model(change: impl FnOnce(&mut ModelSettings)) -> Model {
 /// The design that a text states.
 pub fn parsed(text: &str) -> Design {
     text.parse().expect("a design")
+}
+
+/// Ranges of bars up to a radius of 0.1 m.
+pub const fn bar_ranges(is_exact: bool) -> SizingRanges {
+    SizingRanges {
+        leg: [0.0, 0.1],
+        platform: [0.0, 0.1],
+        listed: [None, None],
+        is_exact,
+        scale: [1.0; 2],
+    }
+}
+
+/// Requires that a quantity of the design is at most a number.
+pub fn at_most(quantity: Quantity, most: f64) -> QuantityLimit {
+    let bound = Bound::AtMost(most);
+    QuantityLimit { quantity, bound }
 }
 
 /// Rails of solid bars of a radius \[m\], which bend.

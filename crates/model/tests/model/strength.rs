@@ -1,7 +1,7 @@
 //! Strength, buckling, and the forces of joints and drives, compared with values from an independent program
 //! (tests/fixtures/README.md), and identities.
 
-use kinefront_model::evaluation::{GridChoice, Model, PoseScalar, Quantity, SizingRanges, WorkspaceTarget};
+use kinefront_model::evaluation::{GridChoice, Model, PoseScalar, Quantity, WorkspaceTarget};
 use kinefront_model::lanes::InstructionSet;
 use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_model::spatial::Pose;
@@ -13,7 +13,7 @@ use serde_json::Value;
 use super::legs::settings;
 use super::reference::{cases_of, design, number, numbers, pose};
 use super::sections::sections;
-use super::strategies::{self, parsed, round_rails};
+use super::strategies::{self, bar_ranges, parsed, round_rails};
 
 fn model(case: &Value, loads: Loads) -> Model {
     strategies::model(|model| {
@@ -295,13 +295,7 @@ fn limited(change: impl FnOnce(&mut kinefront_model::evaluation::ModelSettings))
 /// Bars are sized for strength as they are for stiffness: what limits them is just kept.
 #[test]
 fn bars_are_sized_for_a_stress_that_they_just_keep() {
-    let ranges = SizingRanges {
-        leg: [0.0, 0.1],
-        platform: [0.0, 0.1],
-        listed: [None, None],
-        is_exact: false,
-        scale: [1.0; 2],
-    };
+    let ranges = bar_ranges(false);
     let model = limited(|_| {});
     let mut kept = 0;
     for (text, radius) in [

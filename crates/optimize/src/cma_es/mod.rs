@@ -22,7 +22,7 @@ use descent::Descent;
 use strategy::{Strategy, reflected};
 
 use super::random::Random;
-use super::{Algorithm, Candidate, Evaluated, Outcome, Problem, Target, Variable, doe};
+use super::{Algorithm, Candidate, Evaluated, Outcome, Problem, Variable, doe};
 
 /// Parameters of [`CmaEs`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -355,11 +355,7 @@ impl Algorithm for CmaEs {
             candidates.map(|x| (niche, x)).collect()
         };
         self.pending = asked.iter().map(|(niche, _)| *niche).collect();
-        let candidate = |(_, x)| Candidate {
-            x,
-            target: Some(Target::Best),
-        };
-        asked.into_iter().map(candidate).collect()
+        asked.into_iter().map(|(_, x)| Candidate::seeking_best(x)).collect()
     }
 
     fn tell(&mut self, evaluated: Vec<Evaluated>) {

@@ -313,9 +313,7 @@ fn the_mass_of_vibrations_is_that_of_a_frame() {
                 share * PAYLOAD.inertia,
             );
         }
-        let posed = subject.model.posed(&subject.design);
-        let dynamics = posed.dynamics_at(&subject.pose).expect("reached").expect("stiff");
-        let report = dynamics.report().expect("regular");
+        let report = subject.report_at(&subject.pose);
         for (rows, found) in [([0, 1, 5], report.mass_in_plane), ([2, 3, 4], report.mass_out_of_plane)] {
             for i in 0..3 {
                 for k in 0..3 {
