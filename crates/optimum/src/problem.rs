@@ -255,11 +255,9 @@ impl LocalProblem {
             .zip(unknowns)
             .flat_map(|(free, unknown)| {
                 let value = at_bound(known(free.variable, *unknown), free.range);
-                std::iter::once((free.variable, value)).chain(
-                    free.tied
-                        .iter()
-                        .map(move |(variable, factor)| (*variable, value * factor)),
-                )
+                let tied = free.tied.iter();
+                let tied = tied.map(move |(variable, factor)| (*variable, value * factor));
+                std::iter::once((free.variable, value)).chain(tied)
             })
             .collect();
         for (variable, value) in &given {

@@ -97,15 +97,17 @@ fn price<'a>(problem: &LocalProblem, prices: &'a Prices, name: &str) -> &'a Pric
     found.unwrap_or_else(|| panic!("no price of {name}"))
 }
 
+#[track_caller]
+fn assert_near(found: f64, expected: &Value, tolerance: f64, what: &str) {
+    let off = (found - number(expected)).abs();
+    assert!(off < tolerance, "{what}: {found}, expected {expected}");
+}
+
 /// Compares all prices of a case.
 fn compare(problem: &LocalProblem, prices: &Prices, expected: &Value, tolerance: f64) {
     for (name, expected) in expected.as_object().expect("prices") {
         let expected = expected.get("price").unwrap_or(expected);
-        let found = price(problem, prices, name).price;
-        assert!(
-            (found - number(expected)).abs() < tolerance,
-            "{name}: {found}, expected {expected}"
-        );
+        assert_near(price(problem, prices, name).price, expected, tolerance, name);
     }
 }
 
@@ -132,10 +134,7 @@ fn check(id: &str, region: Region) {
             None => price(&problem, &prices, name).bars_only,
         };
         let found = found.unwrap_or_else(|| panic!("{id}: no price of the bars for {name}"));
-        assert!(
-            (found - number(expected)).abs() < 1e-4,
-            "{id}: bars alone, {name}: {found}, expected {expected}"
-        );
+        assert_near(found, expected, 1e-4, &format!("{id}: bars alone, {name}"));
     }
     for (name, way) in case["bars_only"]["not_repairable_by_bars"].as_object().expect("ways") {
         let cannot = price(&problem, &prices, name).bars_cannot_repair;
@@ -197,10 +196,7 @@ fn two_architectures_have_their_own_prices_where_their_masses_meet() {
             // Solid bars have no walls.
             if !name.starts_with("wall") {
                 let found = price(&problem, &prices, name).price;
-                assert!(
-                    (found - number(expected)).abs() < 1e-3,
-                    "{side}, {name}: {found}, expected {expected}"
-                );
+                assert_near(found, expected, 1e-3, &format!("{side}, {name}"));
             }
         }
     }

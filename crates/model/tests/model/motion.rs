@@ -8,15 +8,13 @@ use glam::DVec2;
 use kinefront_model::dynamics::{DriveInertia, DynamicsReport, DynamicsSettings, Motion, Payload};
 use kinefront_model::evaluation::{Model, PoseScalar};
 use kinefront_model::mechanism::{
-    AnyLeg, Architecture, BarLength, CrossSection, Design, JointKind, LegPart, Manipulator, MemberKind,
+    AnyLeg, Architecture, CrossSection, Design, JointKind, LegPart, Manipulator, MemberKind,
 };
 use kinefront_model::spatial::{Pose, Rotation};
-use kinefront_model::stiffness::RailSupports;
 use kinefront_testkit::numbers as random_numbers;
 
 use super::legs::{cases, model as model_of};
 use super::reference::{design, pose as pose_of};
-use super::strategies::{self, parsed, round_rails};
 
 pub const DRIVES: DriveInertia = DriveInertia {
     slider_mass: 1.5,
@@ -344,62 +342,4 @@ fn vibrations_are_balanced_and_continuous() {
             assert!(first.lift.iter().all(|part| part.abs() < 1e-9), "{}", subject.design);
         }
     });
-}
-
-/// Returns the lowest frequencies in the plane and out of it, of the condensed mass and of the frame.
-fn lowest_of_both(model: &Model, subject: &Subject) -> [[f64; 2]; 2] {
-    let posed = model.posed(&subject.design);
-    let dynamics = posed.dynamics_at(&subject.pose).expect("reached").expect("stiff");
-    let [in_plane, out_of_plane] = dynamics.report().expect("regular").frequencies.expect("rigid rails");
-    let frame = dynamics.frame_frequencies().expect("regular");
-    [[in_plane[0], out_of_plane[0]], frame]
-}
-
-#[test]
-fn the_frequencies_of_the_frame_are_below_those_of_its_condensed_mass() {
-    let mut ratios = Vec::new();
-    for_all([0.0; 3], |subject| {
-        let [condensed, frame] = lowest_of_both(&subject.model, subject);
-        for (condensed, frame) in condensed.iter().zip(frame) {
-            let ratio = condensed / frame;
-            assert!(ratio > 1.0 - 1e-9, "{}: {ratio}", subject.design);
-            ratios.push(ratio);
-        }
-        // Beside a heavy payload the bars weigh nothing, and both are what their stiffness makes them.
-        for telescopic_bar in [BarLength::Current, BarLength::Longest] {
-            let mut settings = subject.model.settings().clone();
-            settings.legs.telescopic_bar = telescopic_bar;
-            settings.dynamics.payload = Payload {
-                mass: 1e10,
-                inertia: 1e10,
-                ..PAYLOAD
-            };
-            let model = Model::new(settings).expect("a model");
-            let [condensed, frame] = lowest_of_both(&model, subject);
-            for (condensed, frame) in condensed.iter().zip(frame) {
-                let ratio = condensed / frame;
-                assert!((ratio - 1.0).abs() < 1e-5, "{}: {ratio}", subject.design);
-            }
-        }
-    });
-    ratios.sort_by(f64::total_cmp);
-    let median = ratios[ratios.len() / 2];
-    // What docs/model.md says of them.
-    assert!((median - 1.009).abs() < 5e-4, "{median}");
-    let above = ratios.iter().filter(|ratio| **ratio > 1.1).count() as f64 / ratios.len() as f64;
-    assert!((above - 0.21).abs() < 5e-3, "{above}");
-    assert!(ratios[ratios.len() - 1] < 2.45, "{ratios:?}");
-}
-
-#[test]
-fn rails_that_bend_have_no_frequencies_of_a_frame() {
-    let design = parsed("3-PRR R=3 r=1.2 Lb=1.8 rj=0.03 rp=0.05");
-    let model = strategies::model(|model| model.rails = round_rails(0.05, RailSupports::Pinned));
-    let posed = model.posed(&design);
-    let dynamics = posed
-        .dynamics_at(&Pose::new(0.0, 0.0, 0.6))
-        .expect("reached")
-        .expect("stiff");
-    assert_eq!(dynamics.frame_frequencies(), None);
-    assert_eq!(dynamics.report().expect("regular").frequencies, None);
 }

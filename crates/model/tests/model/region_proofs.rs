@@ -11,7 +11,7 @@ use kinefront_testkit::poses_of_region;
 use rayon::prelude::*;
 
 use super::regions::RANGES;
-use super::strategies::{self, parsed};
+use super::strategies::{self, PAPER_LIMITS, parsed};
 
 fn with_region(region: Region) -> Model {
     strategies::model(|settings| settings.workspace.region = region)
@@ -78,15 +78,8 @@ fn least_margin(model: &Model, design: &Design, pose: &Pose) -> f64 {
     if model.pose(design, pose).is_err() {
         return -1.0;
     }
-    [
-        PoseScalar::Dexterity,
-        PoseScalar::StiffnessXy,
-        PoseScalar::StiffnessZ,
-        PoseScalar::StiffnessPhiZ,
-    ]
-    .into_iter()
-    .map(|scalar| model.margin_at(design, pose, scalar))
-    .fold(f64::INFINITY, f64::min)
+    let margins = PAPER_LIMITS.map(|scalar| model.margin_at(design, pose, scalar));
+    margins.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// Designs whose bars carry with a little to spare are proved over each kind of region, and no random pose is infeasible; with bars
@@ -198,18 +191,15 @@ fn each_limit_ends_the_proof_of_a_region() {
         .evaluate(&design, GridChoice::Fine)
         .home_phi_deg
         .expect("a home");
-    for scalar in [
-        PoseScalar::Dexterity,
-        PoseScalar::StiffnessXy,
-        PoseScalar::StiffnessZ,
-        PoseScalar::StiffnessPhiZ,
+    let others = [
         PoseScalar::Transmission,
         PoseScalar::Displacement,
         PoseScalar::Clearance,
         PoseScalar::Stress,
         PoseScalar::BucklingFactor,
         PoseScalar::NaturalFrequency,
-    ] {
+    ];
+    for scalar in PAPER_LIMITS.into_iter().chain(others) {
         let limited = |limit: f64| {
             strategies::model(|settings| {
                 settings.workspace.region = region();

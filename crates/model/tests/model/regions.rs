@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use kinefront_model::evaluation::{
-    Better, Constraint, GridChoice, Model, Objective, PoseScalar, Quantity, SizingRanges, WorkspaceTarget,
+    Better, Constraint, Evaluation, GridChoice, Model, Objective, PoseScalar, Quantity, SizingRanges, WorkspaceTarget,
 };
 use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
 use kinefront_model::polygon::{Polygon, PolygonError};
@@ -173,13 +173,10 @@ fn the_home_is_the_orientation_with_the_best_worst_margin() {
     let design = parsed("3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03");
     let free = prescribed(rectangle(0.5, 0.3));
     let found = free.evaluate(&design, GridChoice::Reference);
-    let worst = |evaluation: &kinefront_model::evaluation::Evaluation| {
-        evaluation
-            .constraints
-            .iter()
-            .filter(|report| report.required && report.constraint != Constraint::Assembly)
-            .map(|report| report.margin)
-            .fold(f64::INFINITY, f64::min)
+    let worst = |evaluation: &Evaluation| {
+        let reports = evaluation.constraints.iter().filter(|report| report.required);
+        let of_poses = reports.filter(|report| report.constraint != Constraint::Assembly);
+        of_poses.map(|report| report.margin).fold(f64::INFINITY, f64::min)
     };
     let best = worst(&found);
     for k in 0..144 {
@@ -248,7 +245,7 @@ fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
         let thinner = |leg: f64, platform: f64| {
             let [base, radius, link, rj, rp] = sized.values();
             let values = [base, radius, link, rj * leg, rp * platform];
-            Design::new(sized.architecture(), sized.working_mode(), values).expect("a design")
+            sized.with_dimensions(values).expect("a design")
         };
         let less = thinner(1.0 - 1e-7, 1.0 - 1e-7);
         assert!(!model.evaluate(&less, GridChoice::Reference).is_feasible(), "{sized}");
@@ -287,11 +284,7 @@ fn the_lightest_pair_of_two_lists_is_the_one_found_by_trying_all() {
         let mut lightest = f64::INFINITY;
         for &leg in &radii {
             for &bar in &radii {
-                let pair = Design::new(
-                    design.architecture(),
-                    design.working_mode(),
-                    [base, platform, link, leg, bar],
-                );
+                let pair = design.with_dimensions([base, platform, link, leg, bar]);
                 let found = model.evaluate(&pair.expect("a design"), GridChoice::Reference);
                 if found.is_feasible() {
                     lightest = lightest.min(found.mass());
@@ -367,7 +360,7 @@ fn the_scale_of_a_sized_geometry_is_the_lightest() {
         for step in -40..=60 {
             let factor = factor * (1.0 + 2e-3 * f64::from(step));
             let values = [base * factor, platform * factor, link * factor, 0.02, 0.02];
-            let similar = Design::new(design.architecture(), design.working_mode(), values).expect("a design");
+            let similar = design.with_dimensions(values).expect("a design");
             let Some(other) = model.sized(&similar, &RANGES, target) else {
                 continue;
             };

@@ -59,24 +59,14 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
     let assembled = assembly.value >= assembly.threshold;
     for instructions in InstructionSet::available() {
         let found = model.evaluate_with(design, GridChoice::Reference, instructions);
+        let name = format!("{design}: {}", instructions.name());
         if !assembled {
             prop_assert_eq!(found.workspace_radius(), 0.0);
             continue;
         }
-        prop_assert_eq!(
-            found.workspace_radius(),
-            wanted.radius,
-            "{}: {}",
-            design,
-            instructions.name()
-        );
-        prop_assert_eq!(
-            found.home_phi_deg,
-            first.map(|home| home as f64 * grid.phi_step_deg()),
-            "{}: {}",
-            design,
-            instructions.name()
-        );
+        prop_assert_eq!(found.workspace_radius(), wanted.radius, "{}", name);
+        let home = first.map(|home| home as f64 * grid.phi_step_deg());
+        prop_assert_eq!(found.home_phi_deg, home, "{}", name);
         // Of the limits of a study, none has an id among the constraints.
         let is_limited = found.active().next().is_some() || !found.limits.is_empty();
         prop_assert!(is_limited, "{}: no constraint is active", design);
@@ -88,21 +78,16 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
 fn same(model: &Model, design: &Design) -> Result<(), String> {
     let found = model.evaluate(design, GridChoice::Reference);
     let wanted = plain_search(model, design);
-    let close = |radius: f64| (found.workspace_radius() - radius).abs() <= 1e-9 * wanted.radius;
+    let radius = found.workspace_radius();
+    let close = |wanted_radius: f64| (radius - wanted_radius).abs() <= 1e-9 * wanted.radius;
     if !close(wanted.radius) {
-        return Err(format!(
-            "{design}: {} instead of {}",
-            found.workspace_radius(),
-            wanted.radius
-        ));
+        return Err(format!("{design}: {radius} instead of {}", wanted.radius));
     }
     if let Some(phi_deg) = found.home_phi_deg {
         let home = (phi_deg / model.settings().reference_grid.phi_step_deg()).round() as usize;
-        if !close(wanted.windows[home]) {
-            return Err(format!(
-                "{design}: at {phi_deg}° the radius is {}",
-                wanted.windows[home]
-            ));
+        let radius = wanted.windows[home];
+        if !close(radius) {
+            return Err(format!("{design}: at {phi_deg}° the radius is {radius}"));
         }
     }
     Ok(())

@@ -32,6 +32,14 @@ pub fn parsed(text: &str) -> Design {
     text.parse().expect("a design")
 }
 
+/// The scalars that the paper limits.
+pub const PAPER_LIMITS: [PoseScalar; 4] = [
+    PoseScalar::Dexterity,
+    PoseScalar::StiffnessXy,
+    PoseScalar::StiffnessZ,
+    PoseScalar::StiffnessPhiZ,
+];
+
 /// Ranges of bars up to a radius of 0.1 m.
 pub const fn bar_ranges(is_exact: bool) -> SizingRanges {
     SizingRanges {

@@ -19,7 +19,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
-use super::strategies::{model, parsed};
+use super::strategies::{PAPER_LIMITS, model, parsed};
 use definitions::other_models;
 
 fn certify(design: &Design, phi_deg: f64, claimed_radius: f64, tolerance: f64) -> Certificate {
@@ -315,12 +315,7 @@ fn other_definitions_are_certified() {
 
 /// Sets the paper's limits to 0.
 fn require_nothing(settings: &mut ModelSettings) {
-    for scalar in [
-        PoseScalar::Dexterity,
-        PoseScalar::StiffnessXy,
-        PoseScalar::StiffnessZ,
-        PoseScalar::StiffnessPhiZ,
-    ] {
+    for scalar in PAPER_LIMITS {
         settings.thresholds.set(scalar, Some(0.0));
     }
 }

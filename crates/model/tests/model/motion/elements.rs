@@ -1,12 +1,16 @@
-//! Natural frequencies from finite elements of the frame in space.
+//! Natural frequencies of the frame: those of its finite elements in space, and those of its condensed mass.
 
 use glam::DVec2;
-use kinefront_model::mechanism::{Architecture, LegPosture};
-use kinefront_model::spatial::Rotation;
+use kinefront_model::dynamics::Payload;
+use kinefront_model::evaluation::Model;
+use kinefront_model::mechanism::{Architecture, BarLength, LegPosture};
+use kinefront_model::spatial::{Pose, Rotation};
+use kinefront_model::stiffness::RailSupports;
 use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX};
 
 use super::frame::{AXES, FrameBar, about_p, joint_twist};
 use super::{DRIVES, PAYLOAD, Subject, for_all};
+use crate::strategies::{self, parsed, round_rails};
 
 /// How the ends of an element move, as twists at `P` for a unit of each coordinate.
 struct FrameElement<'a> {
@@ -279,4 +283,62 @@ fn the_frequencies_of_the_frame_are_those_of_its_elements() {
         }
     });
     assert_eq!(seen.len(), Architecture::ALL.len());
+}
+
+/// Returns the lowest frequencies in the plane and out of it, of the condensed mass and of the frame.
+fn lowest_of_both(model: &Model, subject: &Subject) -> [[f64; 2]; 2] {
+    let posed = model.posed(&subject.design);
+    let dynamics = posed.dynamics_at(&subject.pose).expect("reached").expect("stiff");
+    let [in_plane, out_of_plane] = dynamics.report().expect("regular").frequencies.expect("rigid rails");
+    let frame = dynamics.frame_frequencies().expect("regular");
+    [[in_plane[0], out_of_plane[0]], frame]
+}
+
+#[test]
+fn the_frequencies_of_the_frame_are_below_those_of_its_condensed_mass() {
+    let mut ratios = Vec::new();
+    for_all([0.0; 3], |subject| {
+        let [condensed, frame] = lowest_of_both(&subject.model, subject);
+        for (condensed, frame) in condensed.iter().zip(frame) {
+            let ratio = condensed / frame;
+            assert!(ratio > 1.0 - 1e-9, "{}: {ratio}", subject.design);
+            ratios.push(ratio);
+        }
+        // Beside a heavy payload the bars weigh nothing, and both are what their stiffness makes them.
+        for telescopic_bar in [BarLength::Current, BarLength::Longest] {
+            let mut settings = subject.model.settings().clone();
+            settings.legs.telescopic_bar = telescopic_bar;
+            settings.dynamics.payload = Payload {
+                mass: 1e10,
+                inertia: 1e10,
+                ..PAYLOAD
+            };
+            let model = Model::new(settings).expect("a model");
+            let [condensed, frame] = lowest_of_both(&model, subject);
+            for (condensed, frame) in condensed.iter().zip(frame) {
+                let ratio = condensed / frame;
+                assert!((ratio - 1.0).abs() < 1e-5, "{}: {ratio}", subject.design);
+            }
+        }
+    });
+    ratios.sort_by(f64::total_cmp);
+    let median = ratios[ratios.len() / 2];
+    // What docs/model.md says of them.
+    assert!((median - 1.009).abs() < 5e-4, "{median}");
+    let above = ratios.iter().filter(|ratio| **ratio > 1.1).count() as f64 / ratios.len() as f64;
+    assert!((above - 0.21).abs() < 5e-3, "{above}");
+    assert!(ratios[ratios.len() - 1] < 2.45, "{ratios:?}");
+}
+
+#[test]
+fn rails_that_bend_have_no_frequencies_of_a_frame() {
+    let design = parsed("3-PRR R=3 r=1.2 Lb=1.8 rj=0.03 rp=0.05");
+    let model = strategies::model(|model| model.rails = round_rails(0.05, RailSupports::Pinned));
+    let posed = model.posed(&design);
+    let dynamics = posed
+        .dynamics_at(&Pose::new(0.0, 0.0, 0.6))
+        .expect("reached")
+        .expect("stiff");
+    assert_eq!(dynamics.frame_frequencies(), None);
+    assert_eq!(dynamics.report().expect("regular").frequencies, None);
 }
