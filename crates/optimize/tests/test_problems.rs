@@ -38,6 +38,41 @@ fn square(value: f64) -> f64 {
     value * value
 }
 
+/// Osyczka and Kundu 1995; each constraint is divided by its right-hand side.
+fn osy() -> Formula {
+    Formula {
+        name: "osy",
+        bounds: vec![
+            [0.0, 10.0],
+            [0.0, 10.0],
+            [1.0, 5.0],
+            [0.0, 6.0],
+            [1.0, 5.0],
+            [0.0, 10.0],
+        ],
+        objectives: |x| {
+            [
+                -(25.0 * square(x[0] - 2.0)
+                    + square(x[1] - 2.0)
+                    + square(x[2] - 1.0)
+                    + square(x[3] - 4.0)
+                    + square(x[4] - 1.0)),
+                x.iter().map(|value| square(*value)).sum(),
+            ]
+        },
+        constraints: |x| {
+            vec![
+                -(x[0] + x[1] - 2.0) / 2.0,
+                -(6.0 - x[0] - x[1]) / 6.0,
+                -(2.0 - x[1] + x[0]) / 2.0,
+                -(2.0 - x[0] + 3.0 * x[1]) / 2.0,
+                -(4.0 - square(x[2] - 3.0) - x[3]) / 4.0,
+                -(square(x[4] - 3.0) + x[5] - 4.0) / 4.0,
+            ]
+        },
+    }
+}
+
 /// The problems with constraints.
 fn constrained() -> Vec<Formula> {
     vec![
@@ -58,38 +93,7 @@ fn constrained() -> Vec<Formula> {
                 ]
             },
         },
-        // Osyczka and Kundu 1995; each constraint is divided by its right-hand side.
-        Formula {
-            name: "osy",
-            bounds: vec![
-                [0.0, 10.0],
-                [0.0, 10.0],
-                [1.0, 5.0],
-                [0.0, 6.0],
-                [1.0, 5.0],
-                [0.0, 10.0],
-            ],
-            objectives: |x| {
-                [
-                    -(25.0 * square(x[0] - 2.0)
-                        + square(x[1] - 2.0)
-                        + square(x[2] - 1.0)
-                        + square(x[3] - 4.0)
-                        + square(x[4] - 1.0)),
-                    x.iter().map(|value| square(*value)).sum(),
-                ]
-            },
-            constraints: |x| {
-                vec![
-                    -(x[0] + x[1] - 2.0) / 2.0,
-                    -(6.0 - x[0] - x[1]) / 6.0,
-                    -(2.0 - x[1] + x[0]) / 2.0,
-                    -(2.0 - x[0] + 3.0 * x[1]) / 2.0,
-                    -(4.0 - square(x[2] - 3.0) - x[3]) / 4.0,
-                    -(square(x[4] - 3.0) + x[5] - 4.0) / 4.0,
-                ]
-            },
-        },
+        osy(),
         // Tanaka et al. 1995.
         Formula {
             name: "tnk",

@@ -1,7 +1,9 @@
 //! The drive that a design selects is the lightest one that carries its motion, as each drive by itself tells it.
 
 use kinefront_model::dynamics::{Drive, DriveCatalogue, MotionLaw, Task, TaskShape, TaskTiming};
-use kinefront_model::evaluation::{GridChoice, Model, ModelSettings, Quantity, TaskFigures, largest_of_legs};
+use kinefront_model::evaluation::{
+    Evaluation, GridChoice, Model, ModelSettings, Quantity, TaskFigures, largest_of_legs,
+};
 use kinefront_model::mechanism::{Design, JointKind, JointMasses};
 use kinefront_testkit::numbers as random_numbers;
 
@@ -86,6 +88,22 @@ fn random_drives(random: &mut impl FnMut() -> f64, kind: JointKind, force: f64, 
     DriveCatalogue::new((0..12).map(drive).collect()).expect("a catalogue")
 }
 
+/// Asserts that the parts that are ordered name the drive that was selected, and that their masses sum to that of the design.
+fn assert_ordered(model: &Model, evaluation: &Evaluation, drive: &Drive, mass: f64) {
+    let parts = model.parts(&evaluation.design, evaluation.drive);
+    let ordered = parts.iter().find_map(|part| part.drive.as_ref());
+    assert_eq!(ordered, evaluation.drive.map(|_| &drive.name));
+    if evaluation.drive.is_some() {
+        let counted = parts.iter().filter(|part| part.counts);
+        let total: f64 = counted.map(|part| part.total_mass()).sum();
+        assert!(
+            (total - mass).abs() <= 1e-12 * mass,
+            "{}: {total} kg",
+            evaluation.design
+        );
+    }
+}
+
 #[test]
 fn the_lightest_drive_that_carries_the_motion_is_selected() {
     let mut random = random_numbers(7);
@@ -109,24 +127,19 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
             })
             .expect("a model");
             let evaluation = model.evaluate(&design, GridChoice::Reference);
-            let tried: Vec<(usize, f64, f64)> = catalogue
-                .of_kind(kind)
-                .map(|(place, drive)| {
-                    let (figures, mass) = alone(&design, drive);
-                    (place, utilization(drive, &figures), mass)
-                })
-                .collect();
+            let try_alone = |(place, drive)| {
+                let (figures, mass) = alone(&design, drive);
+                (place, utilization(drive, &figures), mass)
+            };
+            let tried: Vec<(usize, f64, f64)> = catalogue.of_kind(kind).map(try_alone).collect();
             let wanted = tried.iter().find(|(_, used, _)| *used <= allowed);
             let without_reserve = tried.iter().find(|(_, used, _)| *used <= 1.0);
             reserved += usize::from(wanted.is_some() && wanted != without_reserve);
             let least = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("drives");
             // One that carries the motion without the reserve is selected, but does not make the design feasible.
             let selected = wanted.or(Some(least).filter(|(_, used, _)| *used <= 1.0));
-            assert_eq!(
-                evaluation.drive,
-                selected.map(|(place, ..)| *place),
-                "{design}: {tried:?}"
-            );
+            let selected = selected.map(|(place, ..)| *place);
+            assert_eq!(evaluation.drive, selected, "{design}: {tried:?}");
             assert_eq!(evaluation.is_feasible(), wanted.is_some(), "{design}");
             let found = evaluation.quantities.get(Quantity::DriveUtilization).expect("a number");
             let (place, used, mass) = wanted.unwrap_or(least);
@@ -138,15 +151,7 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
             assert_eq!(evaluation.quantities.get(Quantity::DriveMass), Some(drive.mass));
             assert!((evaluation.mass() - mass).abs() <= 1e-12 * mass, "{design}: {mass}");
             counts[usize::from(wanted.is_some())] += 1;
-            // The parts that are ordered name it, and their masses sum to that of the design.
-            let parts = model.parts(&design, evaluation.drive);
-            let ordered = parts.iter().find_map(|part| part.drive.as_ref());
-            assert_eq!(ordered, selected.map(|_| &drive.name));
-            if selected.is_some() {
-                let counted = parts.iter().filter(|part| part.counts);
-                let total: f64 = counted.map(|part| part.total_mass()).sum();
-                assert!((total - mass).abs() <= 1e-12 * mass, "{design}: {total} kg");
-            }
+            assert_ordered(&model, &evaluation, drive, *mass);
             // What follows the motion afterwards does so with the same drive.
             let (outcome, samples) = model.follow_task(&evaluation).expect("a motion");
             assert_eq!(outcome.drive.expect("a drive").place, *place);

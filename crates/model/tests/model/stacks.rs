@@ -105,6 +105,36 @@ fn between(a: &Cylinder, b: &Cylinder) -> f64 {
     }
 }
 
+/// The least distance of the joints from members and from each other; negative infinity where an axis is within a joint, whose depth there is
+/// not measured.
+fn clearance_of_joints(joints: &[Cylinder], capsules: &[Capsule], has_proximal: bool) -> f64 {
+    let mut least = f64::INFINITY;
+    for (index, joint) in joints.iter().enumerate() {
+        for capsule in capsules
+            .iter()
+            .filter(|capsule| !is_at_end(joint, capsule, has_proximal))
+        {
+            let ends = [capsule.from, capsule.to].map(|end| end.to_array());
+            let axis = distance_to_cylinder(ends, joint.at.to_array(), joint.radius, joint.heights);
+            let clear = if axis > 0.0 {
+                axis - capsule.radius
+            } else {
+                f64::NEG_INFINITY
+            };
+            least = least.min(clear);
+        }
+        for other in &joints[..index] {
+            let shares = other.leg == joint.leg
+                && (other.point != JointPoint::A || joint.point != JointPoint::C || !has_proximal);
+            let is_rigid = other.point == joint.point && joint.point != JointPoint::B;
+            if !shares && !is_rigid {
+                least = least.min(between(joint, other));
+            }
+        }
+    }
+    least
+}
+
 /// The clearance at random poses is the least distance of capsules and upright cylinders that a library finds.
 #[test]
 fn joints_keep_their_distance() {
@@ -137,31 +167,9 @@ fn joints_keep_their_distance() {
                 [a, report.b[leg], report.c[leg]]
             });
             let joints = cylinders(&model, &design, points, &capsules);
-            let mut least = without.pose(&design, &pose).expect("reachable").nearest.distance;
-            let of_members = least;
+            let of_members = without.pose(&design, &pose).expect("reachable").nearest.distance;
             let has_proximal = architecture.chain().proximal.is_some();
-            for (index, joint) in joints.iter().enumerate() {
-                for capsule in &capsules {
-                    if !is_at_end(joint, capsule, has_proximal) {
-                        let ends = [capsule.from, capsule.to].map(|end| end.to_array());
-                        let axis = distance_to_cylinder(ends, joint.at.to_array(), joint.radius, joint.heights);
-                        // The depth of an axis within a cylinder is not measured.
-                        least = least.min(if axis > 0.0 {
-                            axis - capsule.radius
-                        } else {
-                            f64::NEG_INFINITY
-                        });
-                    }
-                }
-                for other in &joints[..index] {
-                    let shares = other.leg == joint.leg
-                        && (other.point != JointPoint::A || joint.point != JointPoint::C || !has_proximal);
-                    let is_rigid = other.point == joint.point && joint.point != JointPoint::B;
-                    if !shares && !is_rigid {
-                        least = least.min(between(joint, other));
-                    }
-                }
-            }
+            let least = of_members.min(clearance_of_joints(&joints, &capsules, has_proximal));
             let found = report.nearest.distance;
             if least.is_finite() {
                 assert!(
