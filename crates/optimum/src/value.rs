@@ -57,32 +57,34 @@ impl Requirement {
         }
     }
 
+    /// Returns the word in results and the name for a person, both the same for all legs.
+    fn words(self, problem: &LocalProblem) -> [&'static str; 2] {
+        match self {
+            Requirement::Limit { joint, end, .. } => Self::end_of_travel(problem, joint, end),
+            Requirement::EndOfReach { .. } => ["end_of_reach", "end of the reach of a leg"],
+            Requirement::Scalar(scalar) => [threshold_name(scalar), scalar.entry().quantity.label],
+            Requirement::Determinant => ["determinant_sign", "distance to singularities"],
+            Requirement::Quantity(place) => {
+                let entry = limit(problem, place).quantity.entry();
+                [entry.key, entry.label]
+            }
+            Requirement::Base => ["footprint_m:base", "footprint of the base"],
+            Requirement::Assembly => ["assembly", "assembly"],
+        }
+    }
+
     /// Returns the name for a person, the same for all legs.
     pub fn label(self, problem: &LocalProblem) -> String {
-        match self {
-            Requirement::Limit { joint, end, .. } => Self::end_of_travel(problem, joint, end)[1].to_owned(),
-            Requirement::EndOfReach { .. } => "end of the reach of a leg".to_owned(),
-            Requirement::Scalar(scalar) => scalar.entry().quantity.label.to_owned(),
-            Requirement::Determinant => "distance to singularities".to_owned(),
-            Requirement::Quantity(place) => limit(problem, place).quantity.entry().label.to_owned(),
-            Requirement::Base => "footprint of the base".to_owned(),
-            Requirement::Assembly => "assembly".to_owned(),
-        }
+        let [_, label] = self.words(problem);
+        label.to_owned()
     }
 
     /// Returns the name in results, for example `k_z_min` or `reach_and_limits:rail_end:leg1`.
     pub fn name(self, problem: &LocalProblem) -> String {
-        match self {
-            Requirement::Limit { leg, joint, end } => {
-                let [word, _] = Self::end_of_travel(problem, joint, end);
-                format!("reach_and_limits:{word}:leg{}", leg + 1)
-            }
-            Requirement::EndOfReach { leg } => format!("reach_and_limits:end_of_reach:leg{}", leg + 1),
-            Requirement::Scalar(scalar) => threshold_name(scalar).to_owned(),
-            Requirement::Determinant => "determinant_sign".to_owned(),
-            Requirement::Quantity(place) => limit(problem, place).quantity.entry().key.to_owned(),
-            Requirement::Base => "footprint_m:base".to_owned(),
-            Requirement::Assembly => "assembly".to_owned(),
+        let [word, _] = self.words(problem);
+        match self.leg() {
+            Some(leg) => format!("reach_and_limits:{word}:leg{}", leg + 1),
+            None => word.to_owned(),
         }
     }
 }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::joints::actuators;
 use super::legs::{cases, settings};
-use super::reference::{design as case_design, number, numbers, pose as case_pose};
+use super::reference::{design as case_design, numbers, pose as case_pose, pose_at};
 use super::strategies::{applicable_cases, design, leg_settings, pose};
 
 fn is_same(a: &Pose, b: &Pose, tolerance: f64) -> bool {
@@ -21,15 +21,8 @@ fn modes_agree_with_an_independent_search() {
     for case in cases("poses") {
         let design = case_design(&case);
         let found = assembly_modes(&design, &settings(&case), numbers(&case["actuators"]));
-        let wanted: Vec<Pose> = case["assembly_modes"]
-            .as_array()
-            .expect("modes")
-            .iter()
-            .map(|mode| {
-                let phi = number(&mode["phi_deg"]).to_radians();
-                Pose::new(number(&mode["x"]), number(&mode["y"]), phi)
-            })
-            .collect();
+        let wanted = case["assembly_modes"].as_array().expect("modes").iter();
+        let wanted: Vec<Pose> = wanted.map(pose_at).collect();
         assert_eq!(found.len(), wanted.len(), "{design}: {found:?}");
         for pose in &wanted {
             let is_found = found.iter().any(|mode| is_same(&mode.pose, pose, 1e-8));

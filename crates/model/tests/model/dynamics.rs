@@ -8,10 +8,9 @@ use kinefront_model::dynamics::{
 };
 use kinefront_model::evaluation::{Model, TaskFigures, TaskSample};
 use kinefront_model::mechanism::JointKind;
-use kinefront_model::spatial::Pose;
 use serde_json::Value;
 
-use super::reference::{cases_of, design, number, numbers};
+use super::reference::{cases_of, design, number, numbers, pose_at};
 use super::strategies;
 
 /// The settings of a case, whose short names are those of the drives of its architecture.
@@ -91,9 +90,8 @@ fn poses_agree() {
         let posed = model.posed(&design);
         for wanted in case["poses"].as_array().expect("poses") {
             let at = &wanted["pose"];
-            let pose = Pose::new(number(&at["x"]), number(&at["y"]), number(&at["phi_deg"]).to_radians());
             let name = |what: &str| format!("{design} at {at}: {what}");
-            let dynamics = posed.dynamics_at(&pose).expect("reached").expect("stiff");
+            let dynamics = posed.dynamics_at(&pose_at(at)).expect("reached").expect("stiff");
             let motion = Motion {
                 twist: numbers(&wanted["twist"]),
                 acceleration: numbers(&wanted["acceleration"]),

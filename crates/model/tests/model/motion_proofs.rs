@@ -3,9 +3,7 @@
 use glam::DVec2;
 use kinefront_model::certify::{MotionClaim, MotionVerdict};
 use kinefront_model::dynamics::{DynamicsSettings, MotionLaw, Task, TaskFrame, TaskShape, TaskTiming};
-use kinefront_model::evaluation::{
-    Model, ModelSettings, PoseScalar, Quantity, TaskFigures, TaskOutcome, largest_of_legs,
-};
+use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar, Quantity, TaskOutcome, largest_of_legs};
 use kinefront_model::mechanism::{Architecture, Design, JointKind};
 use kinefront_model::spatial::Pose;
 use kinefront_testkit::{numbers as random_numbers, repetitions};
@@ -32,6 +30,13 @@ fn sideways(pose: &Pose, reach: f64, law: MotionLaw, samples: usize) -> Task {
         dwell: 0.05,
         samples,
         timing: TaskTiming::Cycle(2.0),
+    }
+}
+
+fn sampled(task: &Task, samples: usize) -> Task {
+    Task {
+        samples,
+        ..task.clone()
     }
 }
 
@@ -99,24 +104,14 @@ fn a_proved_motion_keeps_its_bounds_at_every_moment() {
                 let name = format!("{design} along {:?} by {law:?}", task.shape);
                 assert!(outcome.figures().is_some(), "{name}: {outcome:?}");
                 let found = model.certify_motion(design, &outcome).expect("a motion");
-                let dense = Task {
-                    samples: 3000,
-                    ..task.clone()
-                };
-                let TaskFigures {
-                    path_reach,
-                    peak_speed,
-                    peak_force,
-                    ..
-                } = follow(model, design, &dense, &frame)
-                    .figures()
-                    .expect("figures")
-                    .clone();
+                let dense = follow(model, design, &sampled(&task, 3000), &frame);
+                let figures = dense.figures().expect("figures");
+                let path_reach = figures.path_reach;
                 let bounds = *found.verdict.bounds().unwrap_or_else(|| panic!("{name}: {found:?}"));
                 proved += 1;
                 for (bound, peak) in [
-                    (bounds.speed, largest_of_legs(peak_speed)),
-                    (bounds.force, largest_of_legs(peak_force)),
+                    (bounds.speed, largest_of_legs(figures.peak_speed)),
+                    (bounds.force, largest_of_legs(figures.peak_force)),
                 ] {
                     assert!(bound >= peak * (1.0 - 1e-12), "{name}: {bound} is passed by {peak}");
                     assert!(bound <= peak * 1.004, "{name}: {bound} is far above {peak}");
@@ -143,15 +138,11 @@ fn what_happens_between_the_samples_is_found() {
             closed: false,
             ..sideways(pose, reach, MotionLaw::Quintic, 3)
         };
-        let dense = Task {
-            samples: 3000,
-            ..rough.clone()
-        };
         let quantity = match design.architecture().actuator() {
             JointKind::Prismatic => Quantity::PathSpeed,
             JointKind::Revolute => Quantity::PathRate,
         };
-        let fine = follow(model, design, &dense, &frame);
+        let fine = follow(model, design, &sampled(&rough, 3000), &frame);
         let peak = largest_of_legs(fine.figures().expect("figures").peak_speed);
         for (limit, is_kept) in [(0.999 * peak, false), (1.001 * peak, true)] {
             let mut settings = model.settings().clone();
@@ -196,10 +187,7 @@ fn no_motion_is_proved_that_a_dense_sampling_refutes() {
             if outcome.figures().is_none() {
                 continue;
             }
-            let dense = Task {
-                samples: 1000,
-                ..straight
-            };
+            let dense = sampled(&straight, 1000);
             let is_followed = follow(model, design, &dense, &frame).figures().is_some();
             let found = model.certify_motion(design, &outcome).expect("a motion");
             match found.verdict {

@@ -44,12 +44,12 @@ pub fn design(case: &Value) -> Design {
 }
 
 pub fn pose(case: &Value) -> Pose {
-    let pose = &case["pose"];
-    Pose::new(
-        number(&pose["x"]),
-        number(&pose["y"]),
-        number(&pose["phi_deg"]).to_radians(),
-    )
+    pose_at(&case["pose"])
+}
+
+pub fn pose_at(value: &Value) -> Pose {
+    let [x, y, phi_deg] = ["x", "y", "phi_deg"].map(|key| number(&value[key]));
+    Pose::new(x, y, phi_deg.to_radians())
 }
 
 pub fn matrix(value: &Value) -> Matrix6<f64> {

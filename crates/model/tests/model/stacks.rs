@@ -190,18 +190,22 @@ fn joints_keep_their_distance() {
     }
 }
 
+/// A design whose legs cross in the plane.
+const CROSSING: &str = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018";
+
+/// A model with a required clearance.
+fn stacked(stacking: Stacking) -> Model {
+    model(|settings| {
+        settings.thresholds.set(PoseScalar::Clearance, Some(0.004));
+        settings.bodies.stacking = stacking;
+    })
+}
+
 /// Legs that cross in the plane do not collide in layers of their own, where the pins of their joints are bodies.
 #[test]
 fn legs_in_layers_of_their_own_may_cross() {
-    let design = parsed("3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018");
-    let required = 0.004;
-    let of = |stacking: Stacking| {
-        model(|settings| {
-            settings.thresholds.set(PoseScalar::Clearance, Some(required));
-            settings.bodies.stacking = stacking;
-        })
-    };
-    let (common, chosen) = (of(Stacking::Common), of(Stacking::Chosen));
+    let design = parsed(CROSSING);
+    let [common, chosen] = [Stacking::Common, Stacking::Chosen].map(stacked);
     assert_eq!(common.stack_of(&design).order, StackOrder::Common);
     assert!(matches!(chosen.stack_of(&design).order, StackOrder::Legs(_)));
     assert!(common.evaluate(&design, GridChoice::Reference).home.is_none());
@@ -211,9 +215,9 @@ fn legs_in_layers_of_their_own_may_cross() {
     // The legs are in three layers, and a pin that passes through one of them is the nearest body.
     let members = chosen.members(&design, &home).expect("reachable");
     let height = |leg: usize| {
-        let is_own = |member: MemberKind| member == MemberKind::TelescopicLeg;
-        let mut legs = members.iter().filter(|report| is_own(report.member.kind));
-        legs.find(|report| report.member.leg == leg).expect("a leg").from.z
+        let mut legs = members.iter().filter(|report| report.member.leg == leg);
+        let own = legs.find(|report| report.member.kind == MemberKind::TelescopicLeg);
+        own.expect("a leg").from.z
     };
     assert!(height(0) != height(1) && height(1) != height(2) && height(0) != height(2));
     let pair = evaluation.nearest.expect("a nearest pair").pair();
@@ -226,11 +230,7 @@ fn legs_in_layers_of_their_own_may_cross() {
 /// The clearance of a workspace in layers of their own is proved with the same heights as it is evaluated.
 #[test]
 fn a_workspace_in_chosen_layers_is_proved() {
-    let design = parsed("3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018");
-    let model = model(|settings| {
-        settings.thresholds.set(PoseScalar::Clearance, Some(0.004));
-        settings.bodies.stacking = Stacking::Chosen;
-    });
+    let (design, model) = (parsed(CROSSING), stacked(Stacking::Chosen));
     let evaluation = model.evaluate(&design, GridChoice::Fine);
     let certify = |claimed_radius: f64| {
         let options = CertifyOptions {

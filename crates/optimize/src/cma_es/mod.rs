@@ -21,6 +21,7 @@ use std::cmp::Ordering;
 use descent::Descent;
 use strategy::{Strategy, reflected};
 
+use super::dominance::order;
 use super::random::Random;
 use super::{Algorithm, Candidate, Evaluated, Outcome, Problem, Variable, doe};
 
@@ -376,15 +377,6 @@ impl Algorithm for CmaEs {
         }
         self.generation += 1;
     }
-}
-
-/// Ranks feasible outcomes by the objective, then infeasible ones by violation.
-fn order(a: &Outcome, b: &Outcome) -> Ordering {
-    let key = |outcome: &Outcome| (outcome.violation.max(0.0), outcome.objectives[0]);
-    let ((violation_a, objective_a), (violation_b, objective_b)) = (key(a), key(b));
-    violation_a
-        .total_cmp(&violation_b)
-        .then(objective_a.total_cmp(&objective_b))
 }
 
 /// Returns the value that a descent sees: the objective with a penalty; infinite for a very large violation.
