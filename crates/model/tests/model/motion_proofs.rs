@@ -74,16 +74,14 @@ fn for_all(mut check: impl FnMut(&Model, &Design, &Pose, f64)) {
         let poses = cases.iter().filter_map(|case| {
             let (design, pose) = (design(case), pose_of(case));
             let model = model_of(case, moving);
-            let found = model.pose(&design, &pose).ok()?;
-            let clear = (found.values[PoseScalar::Reach] / design.base_radius()).min(0.05);
-            (design.architecture() == architecture)
-                .then(|| (clear.min(found.values[PoseScalar::Dexterity]), model, design, pose))
+            let values = model.pose(&design, &pose).ok()?.values;
+            let room = values[PoseScalar::Reach];
+            let clear = (room / design.base_radius()).min(0.05);
+            let key = clear.min(values[PoseScalar::Dexterity]);
+            (design.architecture() == architecture).then_some((key, room, model, design, pose))
         });
         let best = poses.max_by(|a, b| a.0.total_cmp(&b.0));
-        let (_, model, design, pose) = best.unwrap_or_else(|| panic!("no pose of {}", architecture.name()));
-        let room = model
-            .pose(&design, &pose)
-            .map_or(0.0, |found| found.values[PoseScalar::Reach]);
+        let (_, room, model, design, pose) = best.unwrap_or_else(|| panic!("no pose of {}", architecture.name()));
         check(&model, &design, &pose, (0.1 * room).min(0.02 * design.base_radius()));
     }
 }
