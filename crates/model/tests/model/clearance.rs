@@ -262,7 +262,7 @@ fn obstacles_are_as_far_as_a_library_measures() {
     let (mut nearest, mut overlapping) = ([0; 3], 0);
     for round in 0..6000 {
         let architecture = Architecture::ALL[round % Architecture::ALL.len()];
-        let (settings, design) = random.subject(architecture);
+        let (mut settings, design) = random.subject(architecture);
         let free = Model::new(settings.clone()).expect("the grids fit the rotation range");
         let pose = random.pose();
         let Ok(alone) = free.pose(&design, &pose) else { continue };
@@ -271,7 +271,6 @@ fn obstacles_are_as_far_as_a_library_measures() {
         }
         let kind = round % 3;
         let post = Post::new(kind, &mut random);
-        let mut settings = settings;
         settings.surroundings.obstacles = vec![post.obstacle()];
         let model = Model::new(settings).expect("the grids fit the rotation range");
         let members = model.members(&design, &pose).expect("reachable");
@@ -313,10 +312,8 @@ fn obstacles_are_as_far_as_a_library_measures() {
             );
         }
     }
-    assert!(
-        nearest.iter().all(|count| *count > 30) && overlapping > 40,
-        "{nearest:?}, {overlapping}"
-    );
+    let are_all_seen = nearest.iter().all(|count| *count > 30) && overlapping > 40;
+    assert!(are_all_seen, "{nearest:?}, {overlapping}");
 }
 
 /// A member that leaves the room has a clearance below 0, and one within it the distance from the walls.
