@@ -153,8 +153,8 @@ fn with_and_without_learning() -> [FrontDeSettings; 2] {
     [settings, FrontDeSettings { learned, ..settings }]
 }
 
-/// Asserts that a search repeats itself, and that learning leaves out little of the front: less than a share of it, and than a share of what is
-/// missing without learning.
+/// Asserts that a search repeats itself, and that learning leaves out little of the front: less than a share of it, and than a share of
+/// what is missing without learning.
 fn assert_learned(problem: &impl Problem, evaluations: usize, missing: fn(&Archive) -> f64, [most, share]: [f64; 2]) {
     let [settings, unlearned] = with_and_without_learning();
     for seed in 1..=5 {

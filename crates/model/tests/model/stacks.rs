@@ -105,8 +105,8 @@ fn between(a: &Cylinder, b: &Cylinder) -> f64 {
     }
 }
 
-/// The least distance of the joints from members and from each other; negative infinity where an axis is within a joint, whose depth there is
-/// not measured.
+/// The least distance of the joints from members and from each other; negative infinity where an axis is within a joint, whose depth there
+/// is not measured.
 fn clearance_of_joints(joints: &[Cylinder], capsules: &[Capsule], has_proximal: bool) -> f64 {
     let mut least = f64::INFINITY;
     for (index, joint) in joints.iter().enumerate() {

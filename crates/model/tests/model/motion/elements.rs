@@ -98,8 +98,8 @@ impl FrameElement<'_> {
     }
 }
 
-/// The frame of all elements: its stiffness and its mass over the coordinates of the platform, and then those of each leg, of its joints and
-/// of the ends of its elements.
+/// The frame of all elements: its stiffness and its mass over the coordinates of the platform, and then those of each leg, of its joints
+/// and of the ends of its elements.
 struct Elements {
     stiffness: DMatrix<f64>,
     mass: DMatrix<f64>,
@@ -168,8 +168,8 @@ impl Elements {
         driven
     }
 
-    /// Adds the elements of a bar from a body to its tip, and of what goes on beyond its ends. The tube of a telescopic leg moves along it as
-    /// what holds the leg does.
+    /// Adds the elements of a bar from a body to its tip, and of what goes on beyond its ends. The tube of a telescopic leg moves along it
+    /// as what holds the leg does.
     fn add_bar(&mut self, bar: &FrameBar, held: &Matrix6xX<f64>, body: &Matrix6xX<f64>, tip: &Matrix6xX<f64>) {
         let count = self.count;
         let along = |twist: &Matrix6xX<f64>, at: f64| row_of(twist, bar.base + bar.axis * at, bar.axes()[0], false);
