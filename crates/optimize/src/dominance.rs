@@ -30,6 +30,15 @@ pub fn compare(a: &Outcome, b: &Outcome) -> Relation {
     }
 }
 
+/// Ranks feasible outcomes by the first objective, then infeasible ones by violation.
+pub fn order(a: &Outcome, b: &Outcome) -> Ordering {
+    let key = |outcome: &Outcome| (outcome.violation.max(0.0), outcome.objectives[0]);
+    let ((violation_a, objective_a), (violation_b, objective_b)) = (key(a), key(b));
+    violation_a
+        .total_cmp(&violation_b)
+        .then(objective_a.total_cmp(&objective_b))
+}
+
 /// Compares the minimised objectives of two candidates by Pareto dominance.
 pub fn pareto(a: &[f64], b: &[f64]) -> Relation {
     let better = a.iter().zip(b).any(|(a, b)| a < b);

@@ -2,7 +2,7 @@
 
 use super::Objectives;
 use super::hypervolume::hypervolume;
-use super::selection::scaled;
+use super::selection::{scaled, squared_distance};
 use super::subset::{Scale, scales};
 
 /// Two neighbours of a front, with nothing between them.
@@ -87,10 +87,7 @@ pub fn added_share(front: &[Objectives], reference: &[f64], member: &Objectives)
 /// Returns the pairs of members with no other one in the ball about the middle between them.
 fn neighbours(front: &[Objectives]) -> Vec<[usize; 2]> {
     let points = scaled(front);
-    let squared = |a: usize, b: usize| -> f64 {
-        let parts = points[a].iter().zip(&points[b]);
-        parts.map(|(a, b)| (a - b) * (a - b)).sum()
-    };
+    let squared = |a: usize, b: usize| squared_distance(&points[a], &points[b]);
     let mut found = Vec::new();
     for b in 1..points.len() {
         for a in 0..b {
@@ -131,11 +128,7 @@ mod tests {
                 let [polar, around] = [polar, around].map(|part| part * std::f64::consts::FRAC_PI_2);
                 let across = libm::sin(polar);
                 let unit = [across * libm::cos(around), across * libm::sin(around), libm::cos(polar)];
-                let hole = [0.577; 3]
-                    .iter()
-                    .zip(&unit)
-                    .map(|(a, b)| (a - b) * (a - b))
-                    .sum::<f64>();
+                let hole = squared_distance(&[0.577; 3], &unit);
                 if hole > 0.1 && !front.iter().any(|other| other[..] == unit.map(|part| 1.0 - part)[..]) {
                     front.push(unit.map(|part| 1.0 - part).into());
                 }

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use super::dominance::{crowding_distances, non_dominated_ranks};
 use super::random::Random;
-use super::selection::scaled;
+use super::selection::{scaled, squared_distance};
 use super::{Evaluated, Objectives, Outcome};
 
 /// A member of a population.
@@ -109,14 +109,13 @@ fn thinned(front: &[Objectives], size: usize) -> Vec<usize> {
     let points = scaled(front);
     let mut left: Vec<usize> = (0..points.len()).collect();
     let is_best: Vec<bool> = (0..points.len()).map(|place| points[place].contains(&0.0)).collect();
-    let square = |a: usize, b: usize| -> f64 { points[a].iter().zip(&points[b]).map(|(a, b)| (a - b) * (a - b)).sum() };
     while left.len() > size {
         // The two smallest distances of each member.
         let nearest = |place: usize| {
             left.iter()
                 .filter(|&&other| other != place)
                 .fold([f64::INFINITY; 2], |[first, second], &other| {
-                    let distance = square(place, other);
+                    let distance = squared_distance(&points[place], &points[other]);
                     if distance < first {
                         [distance, first]
                     } else {

@@ -107,6 +107,14 @@ pub struct Candidate {
     pub target: Option<Target>,
 }
 
+impl Candidate {
+    /// The candidate that is to be completed for the best leveled objective.
+    pub(crate) fn seeking_best(x: Vec<f64>) -> Self {
+        let target = Some(Target::Best);
+        Self { x, target }
+    }
+}
+
 impl From<Vec<f64>> for Candidate {
     fn from(x: Vec<f64>) -> Self {
         Self { x, target: None }

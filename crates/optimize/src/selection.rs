@@ -159,6 +159,12 @@ fn length(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |length, (a, b)| libm::hypot(length, a - b))
 }
 
+/// Returns the square of the distance of two points.
+#[inline]
+pub(super) fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
 /// Scales each objective to \[0, 1\], where 0 is the best value of the front and 1 the worst.
 pub fn scaled(front: &[impl AsRef<[f64]>]) -> Vec<Vec<f64>> {
     let count = front.first().map_or(0, |first| first.as_ref().len());

@@ -27,24 +27,17 @@ impl Problem for Mixed {
     }
 }
 
+/// All algorithms for the mixed problem, each from a random seed.
+const MAKERS: [fn(u64) -> Box<dyn Algorithm>; 3] = [
+    |seed| Box::new(FrontDe::new(Mixed.variables(), FrontDeSettings::default(), seed)),
+    |seed| Box::new(Nsga2::new(Mixed.variables(), Nsga2Settings::default(), seed)),
+    |seed| Box::new(Moga2::new(Mixed.variables(), Moga2Settings::default(), seed)),
+];
+
 #[test]
 fn every_choice_finds_its_part_of_the_front() {
-    let nsga2 = run(
-        &Mixed,
-        &mut Nsga2::new(Mixed.variables(), Nsga2Settings::default(), 3),
-        6000,
-    );
-    let moga2 = run(
-        &Mixed,
-        &mut Moga2::new(Mixed.variables(), Moga2Settings::default(), 3),
-        6000,
-    );
-    let front_de = run(
-        &Mixed,
-        &mut FrontDe::new(Mixed.variables(), FrontDeSettings::default(), 3),
-        6000,
-    );
-    for archive in [nsga2, moga2, front_de] {
+    for make in MAKERS {
+        let archive = run(&Mixed, make(3).as_mut(), 6000);
         for choice in [0.0, 1.0, 2.0] {
             assert!(
                 archive.iter().any(|member| member.x[0] == choice),
@@ -153,22 +146,31 @@ impl Problem for Frame {
     }
 }
 
-#[test]
-fn a_front_is_learned_where_the_problem_determines_variables() {
+/// The settings by default, and the same without learning.
+fn with_and_without_learning() -> [FrontDeSettings; 2] {
     let settings = FrontDeSettings::default();
-    let unlearned = FrontDeSettings {
-        learned: 0.0,
-        ..settings
-    };
+    let learned = 0.0;
+    [settings, FrontDeSettings { learned, ..settings }]
+}
+
+/// Asserts that a search repeats itself, and that learning leaves out little of the front: less than a share of it, and than a share of
+/// what is missing without learning.
+fn assert_learned(problem: &impl Problem, evaluations: usize, missing: fn(&Archive) -> f64, [most, share]: [f64; 2]) {
+    let [settings, unlearned] = with_and_without_learning();
     for seed in 1..=5 {
-        let search = |settings| run(&Frame, &mut FrontDe::for_problem(&Frame, settings, seed), 600);
+        let search = |settings| run(problem, &mut FrontDe::for_problem(problem, settings, seed), evaluations);
         assert_eq!(search(settings), search(settings));
-        let [learned, without] = [settings, unlearned].map(|settings| Frame::missing(&search(settings)));
+        let [learned, without] = [settings, unlearned].map(|settings| missing(&search(settings)));
         assert!(
-            learned < 0.005 && learned < 0.6 * without,
+            learned < most && learned < share * without,
             "seed {seed}: {learned} is missing, and {without} without learning"
         );
     }
+}
+
+#[test]
+fn a_front_is_learned_where_the_problem_determines_variables() {
+    assert_learned(&Frame, 600, Frame::missing, [0.005, 0.6]);
 }
 
 /// A table of a size `x0`, whose legs have the thickness that its size and its proportion ask for, `0.2 + (1 − x0)² + 2 (x1 − 0.3 x0)²`,
@@ -219,29 +221,13 @@ impl Problem for Table {
 
 #[test]
 fn a_front_without_levels_is_learned_too() {
-    let settings = FrontDeSettings::default();
-    let unlearned = FrontDeSettings {
-        learned: 0.0,
-        ..settings
-    };
-    for seed in 1..=5 {
-        let search = |settings| run(&Table, &mut FrontDe::for_problem(&Table, settings, seed), 400);
-        let [learned, without] = [settings, unlearned].map(|settings| Table::missing(&search(settings)));
-        assert!(
-            learned < 0.01 && learned < 0.8 * without,
-            "seed {seed}: {learned} is missing, and {without} without learning"
-        );
-    }
+    assert_learned(&Table, 400, Table::missing, [0.01, 0.8]);
 }
 
 /// Where the algorithm is told nothing of the structure, or the problem has none, learning changes no bit.
 #[test]
 fn without_determined_variables_nothing_is_learned() {
-    let settings = FrontDeSettings::default();
-    let unlearned = FrontDeSettings {
-        learned: 0.0,
-        ..settings
-    };
+    let [settings, unlearned] = with_and_without_learning();
     let of_frame = |mut algorithm: FrontDe| run(&Frame, &mut algorithm, 600);
     assert_eq!(
         of_frame(FrontDe::new(Frame.variables(), settings, 5)),
@@ -255,12 +241,7 @@ fn without_determined_variables_nothing_is_learned() {
 /// another seed gives others, and all are within the bounds.
 #[test]
 fn algorithms_repeat_themselves_and_stay_in_bounds() {
-    let algorithms: [fn(u64) -> Box<dyn Algorithm>; 3] = [
-        |seed| Box::new(FrontDe::new(Mixed.variables(), FrontDeSettings::default(), seed)),
-        |seed| Box::new(Nsga2::new(Mixed.variables(), Nsga2Settings::default(), seed)),
-        |seed| Box::new(Moga2::new(Mixed.variables(), Moga2Settings::default(), seed)),
-    ];
-    for make in algorithms {
+    for make in MAKERS {
         let record = |seed| {
             let mut algorithm = make(seed);
             let mut asked = Vec::new();

@@ -38,24 +38,43 @@ fn square(value: f64) -> f64 {
     value * value
 }
 
-/// ZDT (Zitzler, Deb, Thiele 2000): `f2 = g·h(f1, g)`.
-fn zdt(name: &'static str, objectives: fn(&[f64]) -> [f64; 2], bounds: Vec<[f64; 2]>) -> Formula {
+/// Osyczka and Kundu 1995; each constraint is divided by its right-hand side.
+fn osy() -> Formula {
     Formula {
-        name,
-        bounds,
-        objectives,
-        constraints: |_| Vec::new(),
+        name: "osy",
+        bounds: vec![
+            [0.0, 10.0],
+            [0.0, 10.0],
+            [1.0, 5.0],
+            [0.0, 6.0],
+            [1.0, 5.0],
+            [0.0, 10.0],
+        ],
+        objectives: |x| {
+            [
+                -(25.0 * square(x[0] - 2.0)
+                    + square(x[1] - 2.0)
+                    + square(x[2] - 1.0)
+                    + square(x[3] - 4.0)
+                    + square(x[4] - 1.0)),
+                x.iter().map(|value| square(*value)).sum(),
+            ]
+        },
+        constraints: |x| {
+            vec![
+                -(x[0] + x[1] - 2.0) / 2.0,
+                -(6.0 - x[0] - x[1]) / 6.0,
+                -(2.0 - x[1] + x[0]) / 2.0,
+                -(2.0 - x[0] + 3.0 * x[1]) / 2.0,
+                -(4.0 - square(x[2] - 3.0) - x[3]) / 4.0,
+                -(square(x[4] - 3.0) + x[5] - 4.0) / 4.0,
+            ]
+        },
     }
 }
 
-fn linear_g(x: &[f64]) -> f64 {
-    1.0 + 9.0 * x[1..].iter().sum::<f64>() / (x.len() - 1) as f64
-}
-
-fn problems() -> Vec<Formula> {
-    let unit = |count: usize| vec![[0.0, 1.0]; count];
-    let mut zdt4 = vec![[-5.0, 5.0]; 10];
-    zdt4[0] = [0.0, 1.0];
+/// The problems with constraints.
+fn constrained() -> Vec<Formula> {
     vec![
         // Binh and Korn 1997.
         Formula {
@@ -74,38 +93,7 @@ fn problems() -> Vec<Formula> {
                 ]
             },
         },
-        // Osyczka and Kundu 1995; each constraint is divided by its right-hand side.
-        Formula {
-            name: "osy",
-            bounds: vec![
-                [0.0, 10.0],
-                [0.0, 10.0],
-                [1.0, 5.0],
-                [0.0, 6.0],
-                [1.0, 5.0],
-                [0.0, 10.0],
-            ],
-            objectives: |x| {
-                [
-                    -(25.0 * square(x[0] - 2.0)
-                        + square(x[1] - 2.0)
-                        + square(x[2] - 1.0)
-                        + square(x[3] - 4.0)
-                        + square(x[4] - 1.0)),
-                    x.iter().map(|value| square(*value)).sum(),
-                ]
-            },
-            constraints: |x| {
-                vec![
-                    -(x[0] + x[1] - 2.0) / 2.0,
-                    -(6.0 - x[0] - x[1]) / 6.0,
-                    -(2.0 - x[1] + x[0]) / 2.0,
-                    -(2.0 - x[0] + 3.0 * x[1]) / 2.0,
-                    -(4.0 - square(x[2] - 3.0) - x[3]) / 4.0,
-                    -(square(x[4] - 3.0) + x[5] - 4.0) / 4.0,
-                ]
-            },
-        },
+        osy(),
         // Tanaka et al. 1995.
         Formula {
             name: "tnk",
@@ -135,54 +123,53 @@ fn problems() -> Vec<Formula> {
                 ]
             },
         },
-        zdt(
-            "zdt1",
-            |x| {
-                let g = linear_g(x);
-                [x[0], g * (1.0 - (x[0] / g).sqrt())]
-            },
-            unit(30),
-        ),
-        zdt(
-            "zdt2",
-            |x| {
-                let g = linear_g(x);
-                [x[0], g * (1.0 - square(x[0] / g))]
-            },
-            unit(30),
-        ),
-        zdt(
-            "zdt3",
-            |x| {
-                let g = linear_g(x);
-                [
-                    x[0],
-                    g * (1.0 - (x[0] / g).sqrt() - x[0] / g * (10.0 * PI * x[0]).sin()),
-                ]
-            },
-            unit(30),
-        ),
-        zdt(
-            "zdt4",
-            |x| {
-                let g = 91.0
-                    + x[1..]
-                        .iter()
-                        .map(|value| square(*value) - 10.0 * (4.0 * PI * value).cos())
-                        .sum::<f64>();
-                [x[0], g * (1.0 - (x[0] / g).sqrt())]
-            },
-            zdt4,
-        ),
-        zdt(
-            "zdt6",
-            |x| {
-                let first = 1.0 - (-4.0 * x[0]).exp() * (6.0 * PI * x[0]).sin().powi(6);
-                let g = 1.0 + 9.0 * (x[1..].iter().sum::<f64>() / 9.0).powf(0.25);
-                [first, g * (1.0 - square(first / g))]
-            },
-            unit(10),
-        ),
+    ]
+}
+
+/// ZDT (Zitzler, Deb, Thiele 2000): the objectives are `f1` and `f2 = g·h(f1/g)`.
+fn zdt(name: &'static str, bounds: Vec<[f64; 2]>, objectives: fn(&[f64]) -> [f64; 2]) -> Formula {
+    Formula {
+        name,
+        bounds,
+        objectives,
+        constraints: |_| Vec::new(),
+    }
+}
+
+fn shaped(first: f64, g: f64, h: impl Fn(f64) -> f64) -> [f64; 2] {
+    [first, g * h(first / g)]
+}
+
+fn linear_g(x: &[f64]) -> f64 {
+    1.0 + 9.0 * x[1..].iter().sum::<f64>() / (x.len() - 1) as f64
+}
+
+fn unconstrained() -> Vec<Formula> {
+    let unit = |count: usize| vec![[0.0, 1.0]; count];
+    let mut zdt4 = vec![[-5.0, 5.0]; 10];
+    zdt4[0] = [0.0, 1.0];
+    vec![
+        zdt("zdt1", unit(30), |x| {
+            shaped(x[0], linear_g(x), |part| 1.0 - part.sqrt())
+        }),
+        zdt("zdt2", unit(30), |x| {
+            shaped(x[0], linear_g(x), |part| 1.0 - square(part))
+        }),
+        zdt("zdt3", unit(30), |x| {
+            shaped(x[0], linear_g(x), |part| {
+                1.0 - part.sqrt() - part * (10.0 * PI * x[0]).sin()
+            })
+        }),
+        zdt("zdt4", zdt4, |x| {
+            let wave = |value: &f64| square(*value) - 10.0 * (4.0 * PI * value).cos();
+            let g = 91.0 + x[1..].iter().map(wave).sum::<f64>();
+            shaped(x[0], g, |part| 1.0 - part.sqrt())
+        }),
+        zdt("zdt6", unit(10), |x| {
+            let first = 1.0 - (-4.0 * x[0]).exp() * (6.0 * PI * x[0]).sin().powi(6);
+            let g = 1.0 + 9.0 * (x[1..].iter().sum::<f64>() / 9.0).powf(0.25);
+            shaped(first, g, |part| 1.0 - square(part))
+        }),
     ]
 }
 
@@ -209,7 +196,7 @@ fn reach(make: Make) {
     let pymoo: serde_json::Value = serde_json::from_str(PYMOO).expect("JSON");
     let evaluations = pymoo["evaluations"].as_u64().expect("a number") as usize;
     let mut short = Vec::new();
-    for problem in problems() {
+    for problem in constrained().into_iter().chain(unconstrained()) {
         let theirs = &pymoo["problems"][problem.name];
         let reference = [0, 1].map(|k| theirs["reference"][k].as_f64().expect("a number"));
         let fraction = median(&problem, evaluations, reference, make) / theirs["median"].as_f64().expect("a number");

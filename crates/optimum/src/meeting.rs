@@ -56,6 +56,20 @@ struct Both {
 }
 
 impl Both {
+    /// Returns both optima at a logarithm of the requirement, each starting from another one.
+    fn at(branches: &[Branch<'_>; 2], from: [&Polished; 2], at: f64) -> Option<Self> {
+        let optima = [
+            branches[0].optimum_at(from[0], at)?,
+            branches[1].optimum_at(from[1], at)?,
+        ];
+        let [a, b] = [0, 1].map(|k| branches[k].problem.log_of(&optima[k]));
+        Some(Self {
+            at,
+            worse: branches[0].problem.goal_sign() * (a - b),
+            optima,
+        })
+    }
+
     /// Returns whether one of the branches has fallen into the other.
     fn is_one_optimum(&self) -> bool {
         let [first, second] = [0, 1].map(|place| &self.optima[place].unknowns);
@@ -93,19 +107,7 @@ impl Meeting {
     /// its own; `None` if no such place was found between them, or, for two architectures, as far beyond either.
     pub fn of(branches: [Branch<'_>; 2]) -> Option<Self> {
         let [first, second] = [branches[0].place()?, branches[1].place()?];
-        let sign = branches[0].problem.goal_sign();
-        let both = |from: [&Polished; 2], at: f64| -> Option<Both> {
-            let optima = [
-                branches[0].optimum_at(from[0], at)?,
-                branches[1].optimum_at(from[1], at)?,
-            ];
-            let [a, b] = [0, 1].map(|k| branches[k].problem.log_of(&optima[k]));
-            Some(Both {
-                at,
-                worse: sign * (a - b),
-                optima,
-            })
-        };
+        let both = |from: [&Polished; 2], at: f64| Both::at(&branches, from, at);
         let starts = [branches[0].optimum, branches[1].optimum];
         let width = second - first;
         let is_one_architecture = starts[0].design.architecture() == starts[1].design.architecture();

@@ -6,7 +6,8 @@ use kinefront_model::mechanism::{Arrangement, CrossSection, JointKind, MemberKin
 use kinefront_model::polygon::Polygon;
 use kinefront_model::workspace::Region;
 
-use super::problem::{LocalProblem, LocalQuestion};
+use super::problem::LocalProblem;
+use super::question::LocalQuestion;
 use super::requirement::{End, Requirement, threshold_name};
 
 /// A number of a question that may be changed.
@@ -102,27 +103,7 @@ impl Parameter {
             Parameter::Density,
             Parameter::ActuatorStiffness,
         ];
-        let of_poses = problem
-            .requirements()
-            .iter()
-            .filter_map(|requirement| match requirement {
-                Requirement::Scalar(scalar) if settings.thresholds.get(*scalar).is_some() => {
-                    Some(Parameter::Threshold(*scalar))
-                }
-                _ => None,
-            });
-        all.extend(of_poses);
-        if settings.thresholds.get(PoseScalar::SafetyFactor).is_some() {
-            all.push(Parameter::YieldStrength);
-        }
-        let of_designs = problem
-            .requirements()
-            .iter()
-            .filter_map(|requirement| match requirement {
-                Requirement::Quantity(place) => Some(Parameter::Limit(*place)),
-                _ => None,
-            });
-        all.extend(of_designs);
+        all.extend(Self::of_requirements(problem));
         match question.workspace.region {
             Region::Disc(_) if question.objective.quantity != Quantity::WorkspaceRadius => {
                 all.push(Parameter::WorkspaceRadius)
@@ -139,78 +120,84 @@ impl Parameter {
         } else if chain.joints[1..].contains(&JointKind::Prismatic) {
             all.extend([Parameter::GuideStart, Parameter::GuideEnd]);
         }
-        let is_ratio = |section: &CrossSection| {
-            matches!(
-                section,
-                CrossSection::Tube(Wall::Ratio(_)) | CrossSection::SquareTube(Wall::Ratio(_))
-            )
-        };
-        if is_ratio(&settings.sections.legs) {
-            all.push(Parameter::LegWall);
-        }
-        if is_ratio(&settings.sections.platform) {
-            all.push(Parameter::PlatformWall);
+        for (section, wall) in [
+            (&settings.sections.legs, Parameter::LegWall),
+            (&settings.sections.platform, Parameter::PlatformWall),
+        ] {
+            if let CrossSection::Tube(Wall::Ratio(_)) | CrossSection::SquareTube(Wall::Ratio(_)) = section {
+                all.push(wall);
+            }
         }
         all
     }
 
+    /// Returns the limits of a problem, those of poses first and then those of designs, with the yield strength where it counts.
+    fn of_requirements(problem: &LocalProblem) -> Vec<Parameter> {
+        let thresholds = &problem.question().settings.thresholds;
+        let requirements = problem.requirements().iter();
+        let of_poses = requirements.clone().filter_map(|requirement| match *requirement {
+            Requirement::Scalar(scalar) if thresholds.get(scalar).is_some() => Some(Parameter::Threshold(scalar)),
+            _ => None,
+        });
+        let of_designs = requirements.filter_map(|requirement| match *requirement {
+            Requirement::Quantity(place) => Some(Parameter::Limit(place)),
+            _ => None,
+        });
+        let safety_factor = thresholds.get(PoseScalar::SafetyFactor);
+        let strength = safety_factor.map(|_| Parameter::YieldStrength);
+        of_poses.chain(strength).chain(of_designs).collect()
+    }
+
+    /// Returns the name in results, the name for a person, and the unit: of the variable itself for a bound of it.
+    fn words(self, question: &LocalQuestion) -> [&'static str; 3] {
+        match self {
+            Parameter::YoungsModulus => ["E", "Young's modulus E", "Pa"],
+            Parameter::ShearModulus => ["G", "shear modulus G", "Pa"],
+            Parameter::Moduli => ["E_and_G", "E and G together", ""],
+            Parameter::Density => ["density", "density", "kg/m³"],
+            Parameter::YieldStrength => ["yield_strength", "yield strength", "Pa"],
+            Parameter::ActuatorStiffness => ["K_act", "stiffness of the actuators", "N/m"],
+            Parameter::Threshold(scalar) => {
+                let entry = &scalar.entry().quantity;
+                [threshold_name(scalar), entry.label, entry.unit]
+            }
+            Parameter::Limit(place) => {
+                let entry = question.settings.limits[place].quantity.entry();
+                [entry.key, entry.label, entry.unit]
+            }
+            Parameter::WorkspaceRadius => ["workspace_radius", "workspace radius R_w", "m"],
+            Parameter::Width => ["width", "width of the region", "m"],
+            Parameter::Height => ["height", "height of the region", "m"],
+            Parameter::RotationRange => ["rotation_range", "rotation range", "°"],
+            Parameter::RailStart => ["rail_start", "start of the rails", ""],
+            Parameter::RailEnd => ["rail_end", "end of the rails", ""],
+            Parameter::GuideStart => ["guide_start", "start of the guides", ""],
+            Parameter::GuideEnd => ["guide_end", "end of the guides", ""],
+            Parameter::TelescopicShortest => ["telescopic_shortest", "shortest telescopic leg", ""],
+            Parameter::LegWall => ["wall_legs", "wall of the leg tubes", ""],
+            Parameter::PlatformWall => ["wall_platform", "wall of the platform tubes", ""],
+            Parameter::Bound(place, _) => {
+                let variable = question.variables[place].variable;
+                [variable.key(), variable.symbol(), variable.unit()]
+            }
+        }
+    }
+
     /// Returns the name in results.
     pub fn name(self, question: &LocalQuestion) -> String {
+        let [name, _, _] = self.words(question);
         match self {
-            Parameter::YoungsModulus => "E".to_owned(),
-            Parameter::ShearModulus => "G".to_owned(),
-            Parameter::Moduli => "E_and_G".to_owned(),
-            Parameter::Density => "density".to_owned(),
-            Parameter::YieldStrength => "yield_strength".to_owned(),
-            Parameter::ActuatorStiffness => "K_act".to_owned(),
-            Parameter::Threshold(scalar) => threshold_name(scalar).to_owned(),
-            Parameter::Limit(place) => question.settings.limits[place].quantity.entry().key.to_owned(),
-            Parameter::WorkspaceRadius => "workspace_radius".to_owned(),
-            Parameter::Width => "width".to_owned(),
-            Parameter::Height => "height".to_owned(),
-            Parameter::RotationRange => "rotation_range".to_owned(),
-            Parameter::RailStart => "rail_start".to_owned(),
-            Parameter::RailEnd => "rail_end".to_owned(),
-            Parameter::GuideStart => "guide_start".to_owned(),
-            Parameter::GuideEnd => "guide_end".to_owned(),
-            Parameter::TelescopicShortest => "telescopic_shortest".to_owned(),
-            Parameter::LegWall => "wall_legs".to_owned(),
-            Parameter::PlatformWall => "wall_platform".to_owned(),
-            Parameter::Bound(place, end) => {
-                format!("bounds.{}.{}", question.variables[place].variable.key(), end.name())
-            }
+            Parameter::Bound(_, end) => format!("bounds.{name}.{}", end.name()),
+            _ => name.to_owned(),
         }
     }
 
     /// Returns the name for a person.
     pub fn label(self, question: &LocalQuestion) -> String {
+        let [_, label, _] = self.words(question);
         match self {
-            Parameter::YoungsModulus => "Young's modulus E".to_owned(),
-            Parameter::ShearModulus => "shear modulus G".to_owned(),
-            Parameter::Moduli => "E and G together".to_owned(),
-            Parameter::Density => "density".to_owned(),
-            Parameter::YieldStrength => "yield strength".to_owned(),
-            Parameter::ActuatorStiffness => "stiffness of the actuators".to_owned(),
-            Parameter::Threshold(scalar) => scalar.entry().quantity.label.to_owned(),
-            Parameter::Limit(place) => question.settings.limits[place].quantity.entry().label.to_owned(),
-            Parameter::WorkspaceRadius => "workspace radius R_w".to_owned(),
-            Parameter::Width => "width of the region".to_owned(),
-            Parameter::Height => "height of the region".to_owned(),
-            Parameter::RotationRange => "rotation range".to_owned(),
-            Parameter::RailStart => "start of the rails".to_owned(),
-            Parameter::RailEnd => "end of the rails".to_owned(),
-            Parameter::GuideStart => "start of the guides".to_owned(),
-            Parameter::GuideEnd => "end of the guides".to_owned(),
-            Parameter::TelescopicShortest => "shortest telescopic leg".to_owned(),
-            Parameter::LegWall => "wall of the leg tubes".to_owned(),
-            Parameter::PlatformWall => "wall of the platform tubes".to_owned(),
-            Parameter::Bound(place, end) => {
-                format!(
-                    "{} bound of {}",
-                    end.name(),
-                    question.variables[place].variable.symbol()
-                )
-            }
+            Parameter::Bound(_, end) => format!("{} bound of {label}", end.name()),
+            _ => label.to_owned(),
         }
     }
 
@@ -248,24 +235,10 @@ impl Parameter {
 
     /// Returns the unit of the value.
     pub fn unit(self, question: &LocalQuestion, actuator: JointKind) -> &'static str {
+        let [_, _, unit] = self.words(question);
         match self {
-            Parameter::YoungsModulus | Parameter::ShearModulus | Parameter::YieldStrength => "Pa",
-            Parameter::Density => "kg/m³",
             Parameter::ActuatorStiffness if actuator == JointKind::Revolute => "N·m/rad",
-            Parameter::ActuatorStiffness => "N/m",
-            Parameter::Threshold(scalar) => scalar.entry().quantity.unit,
-            Parameter::Limit(place) => question.settings.limits[place].quantity.entry().unit,
-            Parameter::WorkspaceRadius | Parameter::Width | Parameter::Height => "m",
-            Parameter::RotationRange => "°",
-            Parameter::Bound(place, _) => question.variables[place].variable.unit(),
-            Parameter::Moduli
-            | Parameter::RailStart
-            | Parameter::RailEnd
-            | Parameter::GuideStart
-            | Parameter::GuideEnd
-            | Parameter::TelescopicShortest
-            | Parameter::LegWall
-            | Parameter::PlatformWall => "",
+            _ => unit,
         }
     }
 
@@ -317,7 +290,34 @@ impl Parameter {
         let mut changed = question.clone();
         let is_zero = self.change(question, actuator) == Change::OfBaseRadius;
         let factor = libm::exp(step);
-        let settings = &mut changed.settings;
+        match self {
+            Parameter::Threshold(scalar) => {
+                let limit = question.settings.thresholds.get(scalar)?;
+                let limit = if is_zero { step * base_radius } else { limit * factor };
+                changed.settings.thresholds.set(scalar, Some(limit));
+            }
+            Parameter::WorkspaceRadius | Parameter::Width | Parameter::Height => {
+                changed.workspace.region = resized(self, &question.workspace.region, factor);
+            }
+            Parameter::RotationRange => changed.workspace.rotation_range_deg *= factor,
+            // The start of a travel is a share of its length, as large as R, so that a step of a zero start has no other meaning.
+            Parameter::RailStart | Parameter::GuideStart if is_zero => return None,
+            Parameter::Bound(place, end) => {
+                let free = &mut changed.variables[place];
+                let bound = &mut free.range[end as usize];
+                *bound = if free.variable.is_angle() {
+                    *bound + step.to_degrees()
+                } else {
+                    *bound * factor
+                };
+            }
+            of_settings => of_settings.multiply(&mut changed.settings, factor, actuator),
+        }
+        Some(changed)
+    }
+
+    /// Multiplies a number of the settings by a factor.
+    fn multiply(self, settings: &mut ModelSettings, factor: f64, actuator: JointKind) {
         let arrange = |settings: &mut ModelSettings, change: fn(&mut Arrangement, f64)| {
             let mut arrangement = *settings.legs.geometry.arrangement();
             change(&mut arrangement, factor);
@@ -338,11 +338,6 @@ impl Parameter {
                 JointKind::Prismatic => settings.actuators.prismatic *= factor,
                 JointKind::Revolute => settings.actuators.revolute *= factor,
             },
-            Parameter::Threshold(scalar) => {
-                let limit = settings.thresholds.get(scalar)?;
-                let limit = if is_zero { step * base_radius } else { limit * factor };
-                settings.thresholds.set(scalar, Some(limit));
-            }
             Parameter::Limit(place) => {
                 let bound = &mut settings.limits[place].bound;
                 *bound = match *bound {
@@ -350,13 +345,6 @@ impl Parameter {
                     Bound::AtMost(limit) => Bound::AtMost(limit * factor),
                 };
             }
-            Parameter::WorkspaceRadius | Parameter::Width | Parameter::Height => {
-                changed.workspace.region = resized(self, &question.workspace.region, factor);
-            }
-            Parameter::RotationRange => changed.workspace.rotation_range_deg *= factor,
-            // The start of a travel is a share of its length, as large as R, so that a step of a zero start has no other meaning.
-            Parameter::RailStart if is_zero => return None,
-            Parameter::GuideStart if is_zero => return None,
             Parameter::RailStart => arrange(settings, |arrangement, factor| arrangement.rail[0] *= factor),
             Parameter::RailEnd => arrange(settings, |arrangement, factor| arrangement.rail[1] *= factor),
             Parameter::GuideStart => arrange(settings, |arrangement, factor| arrangement.guide[0] *= factor),
@@ -366,17 +354,14 @@ impl Parameter {
             }
             Parameter::LegWall => settings.sections.legs = thicker(&settings.sections.legs, factor),
             Parameter::PlatformWall => settings.sections.platform = thicker(&settings.sections.platform, factor),
-            Parameter::Bound(place, end) => {
-                let free = &mut changed.variables[place];
-                let bound = &mut free.range[end as usize];
-                *bound = if free.variable.is_angle() {
-                    *bound + step.to_degrees()
-                } else {
-                    *bound * factor
-                };
-            }
+            // These change by a step that is not always a factor, or are no settings.
+            Parameter::Threshold(_)
+            | Parameter::WorkspaceRadius
+            | Parameter::Width
+            | Parameter::Height
+            | Parameter::RotationRange
+            | Parameter::Bound(..) => {}
         }
-        Some(changed)
     }
 }
 

@@ -8,7 +8,8 @@ use super::multipliers::Multipliers;
 use super::parameter::{Change, Parameter};
 use super::place::{Area, Place, Spot};
 use super::polished::Polished;
-use super::problem::{LocalProblem, LocalQuestion};
+use super::problem::LocalProblem;
+use super::question::LocalQuestion;
 use super::requirement::{Critical, End, NOWHERE, Requirement};
 
 /// Half the step of a parameter by which the effects on the requirements are determined.

@@ -2,14 +2,13 @@
 
 use std::sync::{Arc, OnceLock};
 
-use kinefront_model::evaluation::{
-    Bound, Model, ModelSettings, Objective, PoseScalar, Quantity, QuantityLimit, ScalarSet,
-};
+use kinefront_model::evaluation::{Bound, Model, PoseScalar, Quantity, QuantityLimit, ScalarSet};
 use kinefront_model::mechanism::{AnyLeg, Architecture, Design, DesignVariable, Leg};
-use kinefront_model::workspace::{GridError, WorkspaceSpec};
+use kinefront_model::workspace::GridError;
 
 use super::place::{Area, Density, Spots};
 use super::prepared::Prepared;
+use super::question::{FreeVariable, LocalQuestion};
 use super::requirement::{End, Requirement};
 
 /// Least radius of a bar in a local problem \[m\]: its logarithm is an unknown.
@@ -31,67 +30,6 @@ pub enum LocalError {
     /// A grid does not fit the workspace.
     #[error(transparent)]
     Grid(#[from] GridError),
-}
-
-/// A variable that may change, and those that follow it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FreeVariable {
-    /// The variable.
-    pub variable: DesignVariable,
-    /// Smallest and largest value \[m or deg\].
-    pub range: [f64; 2],
-    /// Variables that are this one times a factor.
-    pub tied: Vec<(DesignVariable, f64)>,
-}
-
-/// What a local problem asks: the best design near a given one for a fixed region.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LocalQuestion {
-    /// The model with all requirements. Its workspace and its objectives are not used.
-    pub settings: ModelSettings,
-    /// The region, whose size is known; its centre, the rotation range, and the home orientation if it is prescribed.
-    pub workspace: WorkspaceSpec,
-    /// What is minimised or maximised.
-    pub objective: Objective,
-    /// The variables that may change; every other one keeps the value of the design.
-    pub variables: Vec<FreeVariable>,
-    /// Whether only what depends on the bars is required.
-    pub is_of_bars: bool,
-    /// Slack that every requirement keeps, as a logarithm or a share of `R`.
-    pub slack: f64,
-}
-
-impl LocalQuestion {
-    /// Requires that a quantity is no worse than a value; a limit that is stricter already stays.
-    pub fn hold(&mut self, objective: Objective, value: f64) {
-        let better = objective.quantity.entry().better;
-        match objective.quantity {
-            Quantity::WorkspaceRadius => {}
-            Quantity::Worst(scalar) if better == objective.goal => {
-                let stated = self.settings.thresholds.get(scalar);
-                let limit = stated.map_or(value, |stated| scalar.stricter(stated, value));
-                self.settings.thresholds.set(scalar, Some(limit));
-            }
-            quantity => self.settings.limits.push(QuantityLimit {
-                quantity,
-                bound: Bound::no_worse_than(value, objective.goal),
-            }),
-        }
-    }
-
-    /// Returns the same question with the bars alone free, for a home orientation \[deg\].
-    pub fn of_bars(&self, home_deg: f64) -> Self {
-        let is_bar = |free: &&FreeVariable| free.variable.may_be_zero();
-        Self {
-            variables: self.variables.iter().filter(is_bar).cloned().collect(),
-            workspace: WorkspaceSpec {
-                home_phi_deg: Some(home_deg),
-                ..self.workspace.clone()
-            },
-            is_of_bars: true,
-            ..self.clone()
-        }
-    }
 }
 
 /// What is minimised or maximised, by its logarithm.
@@ -191,16 +129,7 @@ impl LocalProblem {
                 }
                 for (joint, limits) in any.joint_limits().iter().enumerate() {
                     if limits.is_some() {
-                        found.push(Requirement::Limit {
-                            leg,
-                            joint,
-                            end: End::Lower,
-                        });
-                        found.push(Requirement::Limit {
-                            leg,
-                            joint,
-                            end: End::Upper,
-                        });
+                        found.extend([End::Lower, End::Upper].map(|end| Requirement::Limit { leg, joint, end }));
                     }
                 }
             }
@@ -326,11 +255,9 @@ impl LocalProblem {
             .zip(unknowns)
             .flat_map(|(free, unknown)| {
                 let value = at_bound(known(free.variable, *unknown), free.range);
-                std::iter::once((free.variable, value)).chain(
-                    free.tied
-                        .iter()
-                        .map(move |(variable, factor)| (*variable, value * factor)),
-                )
+                let tied = free.tied.iter();
+                let tied = tied.map(move |(variable, factor)| (*variable, value * factor));
+                std::iter::once((free.variable, value)).chain(tied)
             })
             .collect();
         for (variable, value) in &given {

@@ -6,7 +6,8 @@ use kinefront_model::mechanism::Design;
 use super::parameter::Parameter;
 use super::polished::Polished;
 use super::prices::Price;
-use super::problem::{LocalProblem, LocalQuestion};
+use super::problem::LocalProblem;
+use super::question::LocalQuestion;
 
 /// Largest change of the logarithm of a requirement: a factor of 20.
 pub(crate) const MOST: f64 = 2.995_732_273_553_991;

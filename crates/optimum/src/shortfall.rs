@@ -7,7 +7,8 @@ use kinefront_model::workspace::Region;
 
 use super::parameter::Parameter;
 use super::polished::Polished;
-use super::problem::{LocalProblem, LocalQuestion};
+use super::problem::LocalProblem;
+use super::question::LocalQuestion;
 use super::relax::{MOST, way_of};
 
 /// Factor from the stated limit at which a limit that is an unknown starts.

@@ -66,12 +66,7 @@ impl LocalProblem {
                     spot: Spot::Inside([0.0; 2]),
                     turn: 0.0,
                 };
-                let slack = self.value(prepared, *requirement, &place);
-                found.push(Critical {
-                    requirement: *requirement,
-                    place,
-                    slack,
-                });
+                found.push(self.critical_at(prepared, *requirement, place));
                 continue;
             }
             let value = |index: usize| self.of_scalars(prepared, *requirement, |scalar| fields.scalar(scalar, index));
@@ -93,24 +88,27 @@ impl LocalProblem {
         found
     }
 
+    /// Returns a requirement with its value at a place.
+    fn critical_at(&self, prepared: &Prepared, requirement: Requirement, place: Place) -> Critical {
+        Critical {
+            requirement,
+            place,
+            slack: self.value(prepared, requirement, &place),
+        }
+    }
+
     /// Returns the requirements of g2 that are nearest at a place.
     fn limits_at(&self, prepared: &Prepared, place: Place) -> Vec<Critical> {
-        let of_reach = self
-            .requirements()
-            .iter()
-            .filter(|requirement| requirement.is_of_reach());
-        let at = |requirement: &Requirement| Critical {
-            requirement: *requirement,
-            place,
-            slack: self.value(prepared, *requirement, &place),
-        };
-        let all: Vec<Critical> = of_reach.map(at).filter(|critical| critical.slack > NOWHERE).collect();
-        let least = all
-            .iter()
-            .fold(f64::INFINITY, |least, critical| least.min(critical.slack));
-        all.into_iter()
-            .filter(|critical| critical.slack <= least + ALSO)
-            .collect()
+        let requirements = self.requirements().iter();
+        let of_reach = requirements.filter(|requirement| requirement.is_of_reach());
+        let mut all: Vec<Critical> = of_reach
+            .map(|requirement| self.critical_at(prepared, *requirement, place))
+            .filter(|critical| critical.slack > NOWHERE)
+            .collect();
+        let slacks = all.iter().map(|critical| critical.slack);
+        let least = slacks.fold(f64::INFINITY, f64::min);
+        all.retain(|critical| critical.slack <= least + ALSO);
+        all
     }
 
     /// Returns the critical poses of a design: those that spots of the region lead to, and those that `known` ones of a design near it lead
@@ -135,11 +133,7 @@ impl LocalProblem {
 
     /// Returns the minimum of a requirement near a place, by steps along each coordinate that are halved where none helps.
     pub(crate) fn refined(&self, prepared: &Prepared, requirement: Requirement, from: Place, first: f64) -> Critical {
-        let mut best = Critical {
-            requirement,
-            place: from,
-            slack: self.value(prepared, requirement, &from),
-        };
+        let mut best = self.critical_at(prepared, requirement, from);
         let freedoms = Area::freedoms(from.spot);
         let rough = if self.question().slack > 0.0 {
             ROUGH_ACCURACY
@@ -159,15 +153,11 @@ impl LocalProblem {
                         is_at_end = true;
                         continue;
                     };
-                    let slack = self.value(prepared, requirement, &place);
-                    rise = rise.max(slack - best.slack);
+                    let next = self.critical_at(prepared, requirement, place);
+                    rise = rise.max(next.slack - best.slack);
                     // Where the requirement has no value, another one is missed.
-                    if slack < best.slack && slack > NOWHERE {
-                        best = Critical {
-                            requirement,
-                            place,
-                            slack,
-                        };
+                    if next.slack < best.slack && next.slack > NOWHERE {
+                        best = next;
                         is_lower = true;
                     }
                 }
@@ -188,11 +178,6 @@ impl LocalProblem {
     /// is off by as much. All coordinates change together, because a valley may be parallel to none of them.
     pub(crate) fn sharpened(&self, prepared: &Prepared, from: &Critical) -> Critical {
         let requirement = from.requirement;
-        let at = |place: Place| Critical {
-            requirement,
-            place,
-            slack: self.value(prepared, requirement, &place),
-        };
         let mut place = from.place;
         for _ in 0..VERTICES {
             let Some(next) = self.vertex(prepared, requirement, place) else {
@@ -201,7 +186,7 @@ impl LocalProblem {
             place = next;
         }
         // The known slack may be that of another design. Rounding aside, the vertex is no higher.
-        let (known, found) = (at(from.place), at(place));
+        let [known, found] = [from.place, place].map(|place| self.critical_at(prepared, requirement, place));
         if found.slack <= known.slack + 1e-9 {
             found
         } else {

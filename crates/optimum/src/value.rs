@@ -2,7 +2,9 @@
 
 use std::cell::OnceCell;
 
-use kinefront_model::evaluation::{Better, MarginUnit, ModelSettings, PoseScalar, PoseScalars, Quantity};
+use kinefront_model::evaluation::{
+    Better, MarginUnit, ModelSettings, PoseScalar, PoseScalars, Quantity, QuantityLimit,
+};
 use kinefront_model::mechanism::MemberKind;
 use nalgebra::{DMatrix, DVector};
 
@@ -55,42 +57,41 @@ impl Requirement {
         }
     }
 
+    /// Returns the word in results and the name for a person, both the same for all legs.
+    fn words(self, problem: &LocalProblem) -> [&'static str; 2] {
+        match self {
+            Requirement::Limit { joint, end, .. } => Self::end_of_travel(problem, joint, end),
+            Requirement::EndOfReach { .. } => ["end_of_reach", "end of the reach of a leg"],
+            Requirement::Scalar(scalar) => [threshold_name(scalar), scalar.entry().quantity.label],
+            Requirement::Determinant => ["determinant_sign", "distance to singularities"],
+            Requirement::Quantity(place) => {
+                let entry = limit(problem, place).quantity.entry();
+                [entry.key, entry.label]
+            }
+            Requirement::Base => ["footprint_m:base", "footprint of the base"],
+            Requirement::Assembly => ["assembly", "assembly"],
+        }
+    }
+
     /// Returns the name for a person, the same for all legs.
     pub fn label(self, problem: &LocalProblem) -> String {
-        match self {
-            Requirement::Limit { joint, end, .. } => Self::end_of_travel(problem, joint, end)[1].to_owned(),
-            Requirement::EndOfReach { .. } => "end of the reach of a leg".to_owned(),
-            Requirement::Scalar(scalar) => scalar.entry().quantity.label.to_owned(),
-            Requirement::Determinant => "distance to singularities".to_owned(),
-            Requirement::Quantity(place) => problem.question().settings.limits[place]
-                .quantity
-                .entry()
-                .label
-                .to_owned(),
-            Requirement::Base => "footprint of the base".to_owned(),
-            Requirement::Assembly => "assembly".to_owned(),
-        }
+        let [_, label] = self.words(problem);
+        label.to_owned()
     }
 
     /// Returns the name in results, for example `k_z_min` or `reach_and_limits:rail_end:leg1`.
     pub fn name(self, problem: &LocalProblem) -> String {
-        match self {
-            Requirement::Limit { leg, joint, end } => {
-                let [word, _] = Self::end_of_travel(problem, joint, end);
-                format!("reach_and_limits:{word}:leg{}", leg + 1)
-            }
-            Requirement::EndOfReach { leg } => format!("reach_and_limits:end_of_reach:leg{}", leg + 1),
-            Requirement::Scalar(scalar) => threshold_name(scalar).to_owned(),
-            Requirement::Determinant => "determinant_sign".to_owned(),
-            Requirement::Quantity(place) => problem.question().settings.limits[place]
-                .quantity
-                .entry()
-                .key
-                .to_owned(),
-            Requirement::Base => "footprint_m:base".to_owned(),
-            Requirement::Assembly => "assembly".to_owned(),
+        let [word, _] = self.words(problem);
+        match self.leg() {
+            Some(leg) => format!("reach_and_limits:{word}:leg{}", leg + 1),
+            None => word.to_owned(),
         }
     }
+}
+
+/// Returns a limit of the problem that is none of poses.
+fn limit(problem: &LocalProblem, place: usize) -> &QuantityLimit {
+    &problem.question().settings.limits[place]
 }
 
 impl LocalProblem {
@@ -110,7 +111,7 @@ impl LocalProblem {
             }
             Requirement::Base => self.footprint_beyond_base(prepared),
             Requirement::Quantity(index) if !requirement.is_of_poses(self) => {
-                let limit = &self.question().settings.limits[index];
+                let limit = limit(self, index);
                 self.excess_of_quantity(prepared, limit).unwrap_or(NOWHERE)
             }
             Requirement::Scalar(_) | Requirement::Determinant | Requirement::Quantity(_) => {
@@ -133,7 +134,7 @@ impl LocalProblem {
                 Some(libm::log(self.limit(prepared, PoseScalar::Footprint) / farthest))
             }
             Requirement::Quantity(index) => {
-                let limit = &self.question().settings.limits[index];
+                let limit = limit(self, index);
                 (limit.quantity == Quantity::Worst(PoseScalar::Footprint)).then(|| excess(farthest, limit))
             }
             _ => None,
@@ -171,7 +172,7 @@ impl LocalProblem {
             }
             Requirement::Determinant => value(PoseScalar::Determinant) * self.sign(prepared),
             Requirement::Quantity(index) => {
-                let limit = &self.question().settings.limits[index];
+                let limit = limit(self, index);
                 match limit.quantity {
                     Quantity::Worst(scalar) => excess(value(scalar), limit),
                     _ => NOWHERE,
@@ -194,10 +195,10 @@ impl LocalProblem {
     /// Returns the values of critical requirements at their places for some unknowns.
     pub(crate) fn values_of(&self, unknowns: &[f64], critical: &[Critical]) -> Vec<f64> {
         match self.prepare(unknowns) {
-            Some(prepared) => critical
-                .iter()
-                .map(|critical| self.value(&prepared, critical.requirement, &critical.place))
-                .collect(),
+            Some(prepared) => {
+                let value = |critical: &Critical| self.value(&prepared, critical.requirement, &critical.place);
+                critical.iter().map(value).collect()
+            }
             None => vec![NOWHERE; critical.len()],
         }
     }

@@ -29,16 +29,18 @@ fn number(value: &Value) -> f64 {
 /// The design of a case; it states its architecture itself, or `architecture` does.
 fn design_of(case: &Value) -> Design {
     let name = case["architecture"].as_str().expect("an architecture");
-    let architecture = Architecture::ALL
-        .iter()
-        .find(|architecture| architecture.name() == name);
+    let architecture: Architecture = name.parse().expect("a known architecture");
     let values = DESIGN_VARIABLES.map(|variable: DesignVariable| number(&case["design"][variable.key()]));
-    Design::new(
-        *architecture.expect("a known architecture"),
-        WorkingMode::ALL_PLUS,
-        values,
-    )
-    .expect("a design")
+    Design::new(architecture, WorkingMode::ALL_PLUS, values).expect("a design")
+}
+
+fn rectangle() -> Region {
+    Region::Polygon(Polygon::rectangle(0.6, 0.4).expect("a rectangle"))
+}
+
+/// Minimises or maximises a quantity.
+fn objective(quantity: Quantity, goal: Better) -> Objective {
+    Objective { quantity, goal }
 }
 
 /// The paper's question about the mass, for a region.
@@ -57,22 +59,22 @@ fn question(region: Region) -> LocalQuestion {
             centre: DVec2::ZERO,
             home_phi_deg: None,
         },
-        objective: Objective {
-            quantity: Quantity::Mass,
-            goal: Better::Lower,
-        },
+        objective: objective(Quantity::Mass, Better::Lower),
         variables: DESIGN_VARIABLES.into_iter().zip(bounds).map(free).collect(),
         is_of_bars: false,
         slack: 0.0,
     }
 }
 
+/// The paper's problem about the mass of a design, for a region.
+fn problem(region: Region, design: &Design) -> LocalProblem {
+    LocalProblem::new(question(region), design).expect("a question")
+}
+
 /// A design that is not the optimum: with larger lengths and thicker bars.
 fn displaced(design: &Design) -> Design {
-    let values = design.values();
-    let factors = [1.004, 1.003, 1.006, 1.02, 1.01];
-    let mut moved = values;
-    for (value, factor) in moved.iter_mut().zip(factors) {
+    let mut moved = design.values();
+    for (value, factor) in moved.iter_mut().zip([1.004, 1.003, 1.006, 1.02, 1.01]) {
         *value = (*value * factor).min(4.0);
     }
     design.with_dimensions(moved).expect("a design")
@@ -91,29 +93,28 @@ fn polished(problem: &LocalProblem, start: &Design) -> Polished {
 
 fn price<'a>(problem: &LocalProblem, prices: &'a Prices, name: &str) -> &'a Price {
     let is_it = |price: &&Price| price.parameter.name(problem.question()) == name;
-    prices
-        .prices
-        .iter()
-        .find(is_it)
-        .unwrap_or_else(|| panic!("no price of {name}"))
+    let found = prices.prices.iter().find(is_it);
+    found.unwrap_or_else(|| panic!("no price of {name}"))
+}
+
+#[track_caller]
+fn assert_near(found: f64, expected: &Value, tolerance: f64, what: &str) {
+    let off = (found - number(expected)).abs();
+    assert!(off < tolerance, "{what}: {found}, expected {expected}");
 }
 
 /// Compares all prices of a case.
 fn compare(problem: &LocalProblem, prices: &Prices, expected: &Value, tolerance: f64) {
     for (name, expected) in expected.as_object().expect("prices") {
         let expected = expected.get("price").unwrap_or(expected);
-        let found = price(problem, prices, name).price;
-        assert!(
-            (found - number(expected)).abs() < tolerance,
-            "{name}: {found}, expected {expected}"
-        );
+        assert_near(price(problem, prices, name).price, expected, tolerance, name);
     }
 }
 
 fn check(id: &str, region: Region) {
     let case = case(id);
     let design = design_of(&case);
-    let problem = LocalProblem::new(question(region), &design).expect("a question");
+    let problem = problem(region, &design);
     let found = polished(&problem, &displaced(&design));
     let mass = number(&case["mass_kg"]);
     assert!(
@@ -123,10 +124,8 @@ fn check(id: &str, region: Region) {
     );
     let prices = problem.prices(&found, true);
     compare(&problem, &prices, &case["prices"], PRICE);
-    let of_bars = case["bars_only"]["prices"]
-        .as_object()
-        .expect("prices of the bars alone");
-    for (name, expected) in of_bars {
+    let of_bars = &case["bars_only"]["prices"];
+    for (name, expected) in of_bars.as_object().expect("prices of the bars alone") {
         let found = match name.strip_prefix("design.") {
             Some(key) => {
                 let of = |(variable, _): &&(DesignVariable, f64)| variable.key() == key;
@@ -135,10 +134,7 @@ fn check(id: &str, region: Region) {
             None => price(&problem, &prices, name).bars_only,
         };
         let found = found.unwrap_or_else(|| panic!("{id}: no price of the bars for {name}"));
-        assert!(
-            (found - number(expected)).abs() < 1e-4,
-            "{id}: bars alone, {name}: {found}, expected {expected}"
-        );
+        assert_near(found, expected, 1e-4, &format!("{id}: bars alone, {name}"));
     }
     for (name, way) in case["bars_only"]["not_repairable_by_bars"].as_object().expect("ways") {
         let cannot = price(&problem, &prices, name).bars_cannot_repair;
@@ -162,7 +158,7 @@ fn a_3_rpr_at_a_bound_agrees_with_the_independent_solver() {
 
 #[test]
 fn a_3_prr_for_a_rectangle_agrees_with_the_independent_solver() {
-    check("f", Region::Polygon(Polygon::rectangle(0.6, 0.4).expect("a rectangle")));
+    check("f", rectangle());
 }
 
 #[test]
@@ -188,8 +184,7 @@ fn two_architectures_have_their_own_prices_where_their_masses_meet() {
     for side in ["smaller_radius", "larger_radius"] {
         let branch = &case[side];
         let design = design_of(branch);
-        let problem = LocalProblem::new(question(Region::Disc(number(&case["workspace_radius_m"]))), &design)
-            .expect("a question");
+        let problem = problem(Region::Disc(number(&case["workspace_radius_m"])), &design);
         let found = polished(&problem, &design);
         assert!(
             (found.objective / mass - 1.0).abs() < 1e-6,
@@ -201,10 +196,7 @@ fn two_architectures_have_their_own_prices_where_their_masses_meet() {
             // Solid bars have no walls.
             if !name.starts_with("wall") {
                 let found = price(&problem, &prices, name).price;
-                assert!(
-                    (found - number(expected)).abs() < 1e-3,
-                    "{side}, {name}: {found}, expected {expected}"
-                );
+                assert_near(found, expected, 1e-3, &format!("{side}, {name}"));
             }
         }
     }
@@ -215,7 +207,7 @@ fn a_convex_kink_has_two_prices() {
     let start: Design = "3-RPR R=0.52 r=0.1 Lb=0.56 rj=0.0065 rp=0.0085"
         .parse()
         .expect("a design");
-    let problem = LocalProblem::new(question(Region::Disc(0.1303449)), &start).expect("a question");
+    let problem = problem(Region::Disc(0.1303449), &start);
     let found = polished(&problem, &start);
     assert!((found.objective - 2.085360).abs() < 2e-6, "{}", found.objective);
     let prices = problem.prices(&found, false);
@@ -230,16 +222,9 @@ fn a_convex_kink_has_two_prices() {
 
 #[test]
 fn a_wish_needs_the_relaxations_of_the_independent_solver() {
-    for (id, of, region) in [
-        ("why-not-b", "b", Region::Disc(1.2)),
-        (
-            "why-not-f",
-            "f",
-            Region::Polygon(Polygon::rectangle(0.6, 0.4).expect("a rectangle")),
-        ),
-    ] {
+    for (id, of, region) in [("why-not-b", "b", Region::Disc(1.2)), ("why-not-f", "f", rectangle())] {
         let (wish, design) = (case(id), design_of(&case(of)));
-        let problem = LocalProblem::new(question(region), &design).expect("a question");
+        let problem = problem(region, &design);
         let found = polished(&problem, &design);
         let prices = problem.prices(&found, false);
         let relaxations = problem.relaxations(&found, &prices.prices, number(&wish["wished_mass_kg"]));
@@ -274,7 +259,7 @@ fn a_wish_needs_the_relaxations_of_the_independent_solver() {
 #[test]
 fn prices_predict_the_optimum_after_a_small_change() {
     let design = design_of(&case("b"));
-    let problem = LocalProblem::new(question(Region::Disc(1.2)), &design).expect("a question");
+    let problem = problem(Region::Disc(1.2), &design);
     let found = polished(&problem, &design);
     let prices = problem.prices(&found, false);
     for found_price in prices.prices.iter().filter(|price| price.price.abs() > 1e-3) {
@@ -309,12 +294,8 @@ fn forces_and_lengths_have_no_scale_of_their_own() {
         let forces = of("E") + of("G") + of("K_act") + stiffness;
         assert!(forces.abs() < 1e-6, "{text}: {forces}");
         assert!((of("E_and_G") - of("E") - of("G")).abs() < 1e-8);
-        let bounds: f64 = prices
-            .prices
-            .iter()
-            .filter(|price| matches!(price.parameter, Parameter::Bound(..)))
-            .map(|price| price.price)
-            .sum();
+        let is_bound = |price: &&Price| matches!(price.parameter, Parameter::Bound(..));
+        let bounds: f64 = prices.prices.iter().filter(is_bound).map(|price| price.price).sum();
         let times = if text.starts_with("3-RRR") { 3.0 } else { 1.0 };
         let lengths = times * of("K_act")
             + of("k_xy_min")
@@ -343,7 +324,7 @@ fn forces_and_lengths_have_no_scale_of_their_own() {
 fn an_optimum_keeps_the_slack_that_is_asked_for() {
     let case = case("b");
     let (design, mass) = (design_of(&case), number(&case["mass_kg"]));
-    let problem = LocalProblem::new(question(Region::Disc(1.2)), &design).expect("a question");
+    let problem = problem(Region::Disc(1.2), &design);
     let exact = polished(&problem, &displaced(&design));
     for slack in [2e-7, 1e-6, 1e-5] {
         let mut asked = problem.question().clone();
@@ -380,17 +361,9 @@ fn a_question_without_a_local_problem_says_so() {
 fn the_largest_radius_is_an_objective_like_the_mass() {
     let design = design_of(&case("b"));
     let mut question = question(Region::Disc(1.0));
-    question.hold(
-        Objective {
-            quantity: Quantity::Mass,
-            goal: Better::Lower,
-        },
-        number(&case("b")["mass_kg"]),
-    );
-    question.objective = Objective {
-        quantity: Quantity::WorkspaceRadius,
-        goal: Better::Higher,
-    };
+    let mass = objective(Quantity::Mass, Better::Lower);
+    question.hold(mass, number(&case("b")["mass_kg"]));
+    question.objective = objective(Quantity::WorkspaceRadius, Better::Higher);
     let problem = LocalProblem::new(question, &design).expect("a question");
     let found = polished(&problem, &design);
     assert!(

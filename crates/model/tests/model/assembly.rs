@@ -6,8 +6,9 @@ use kinefront_model::mechanism::{AnyLeg, Design, Leg, LegSettings, LockedKind, L
 use kinefront_model::spatial::Pose;
 use proptest::prelude::*;
 
-use super::legs::{cases, design as case_design, settings};
-use super::reference::{number, pose as case_pose};
+use super::joints::actuators;
+use super::legs::{cases, settings};
+use super::reference::{design as case_design, numbers, pose as case_pose, pose_at};
 use super::strategies::{applicable_cases, design, leg_settings, pose};
 
 fn is_same(a: &Pose, b: &Pose, tolerance: f64) -> bool {
@@ -19,17 +20,9 @@ fn is_same(a: &Pose, b: &Pose, tolerance: f64) -> bool {
 fn modes_agree_with_an_independent_search() {
     for case in cases("poses") {
         let design = case_design(&case);
-        let values = [0, 1, 2].map(|leg| number(&case["actuators"][leg]));
-        let found = assembly_modes(&design, &settings(&case), values);
-        let wanted: Vec<Pose> = case["assembly_modes"]
-            .as_array()
-            .expect("modes")
-            .iter()
-            .map(|mode| {
-                let phi = number(&mode["phi_deg"]).to_radians();
-                Pose::new(number(&mode["x"]), number(&mode["y"]), phi)
-            })
-            .collect();
+        let found = assembly_modes(&design, &settings(&case), numbers(&case["actuators"]));
+        let wanted = case["assembly_modes"].as_array().expect("modes").iter();
+        let wanted: Vec<Pose> = wanted.map(pose_at).collect();
         assert_eq!(found.len(), wanted.len(), "{design}: {found:?}");
         for pose in &wanted {
             let is_found = found.iter().any(|mode| is_same(&mode.pose, pose, 1e-8));
@@ -101,10 +94,7 @@ fn a_manipulator_with_six_modes() {
 }
 
 fn values(design: &Design, settings: &LegSettings, pose: &Pose) -> Option<[f64; 3]> {
-    let manipulator = Manipulator::<AnyLeg>::new(design, settings);
-    let posture = manipulator.posture(pose).ok()?;
-    let driven = design.architecture().driven();
-    Some([0, 1, 2].map(|i| manipulator.legs[i].joint_values(&posture.legs[i])[driven]))
+    actuators(design, &Manipulator::<AnyLeg>::new(design, settings), pose)
 }
 
 proptest! {

@@ -2,14 +2,15 @@
 
 use glam::DVec2;
 use kinefront_model::evaluation::{Model, PoseScalar, ScalarSet};
-use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Rotation;
+
+use super::strategies::parsed;
 
 /// Where every leg reaches a pose, the values are those of the evaluation; across the end of a rail they continue smoothly, and the
 /// distance from the limit changes its sign.
 #[test]
 fn values_continue_across_a_joint_limit() {
-    let design: Design = "3-PRR R=1 r=0.3 Lb=0.9 rj=0.01 rp=0.015".parse().expect("a design");
+    let design = parsed("3-PRR R=1 r=0.3 Lb=0.9 rj=0.01 rp=0.015");
     let evaluator = Model::default().pose_evaluator(&design);
     let arms = evaluator.arms(&Rotation::new(0.3));
     let at = |x: f64| evaluator.evaluate_beyond_limits(&arms, DVec2::new(x, 0.05), ScalarSet::default());

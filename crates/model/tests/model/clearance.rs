@@ -9,14 +9,18 @@ use kinefront_model::spatial::{Pose, Rotation};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::strategies;
+use crate::strategies::{self, parsed};
 use kinefront_testkit::oracle::{Fault, Found, distance_to_cylinder, distance_to_prism, oracle};
 use kinefront_testkit::repetitions;
 
 /// Generator of random numbers within a range.
-pub struct Random(pub ChaCha8Rng);
+pub struct Random(ChaCha8Rng);
 
 impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -93,7 +97,7 @@ fn in_lanes(model: &Model, design: &Design, pose: &Pose) -> Option<f64> {
 /// Compares random poses of random designs; returns the number of poses with an overlap and, for each fault of the
 /// oracle, the number of poses at which it is detected.
 fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize, Vec<usize>) {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(7));
+    let mut random = Random::new(7);
     let (mut done, mut overlapping, mut shown) = (0, 0, vec![0; faults.len()]);
     while done < poses {
         let (settings, design) = random.subject(architecture);
@@ -200,46 +204,74 @@ fn a_planted_fault_shows() {
 /// Accuracy of the distances of the library, which iterates \[m\].
 const TOLERANCE: f64 = 1e-5;
 
+/// An upright obstacle: a cylinder, a prism with four sides, or one with three.
+struct Post {
+    kind: usize,
+    centre: DVec2,
+    size: f64,
+    heights: [f64; 2],
+}
+
+impl Post {
+    fn new(kind: usize, random: &mut Random) -> Self {
+        let centre = DVec2::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0));
+        let low = random.between(-0.5, 0.3);
+        Self {
+            kind,
+            centre,
+            heights: [low, low + random.between(0.01, 0.5)],
+            size: random.between(0.05, 0.6),
+        }
+    }
+
+    fn corners(&self) -> Vec<[f64; 2]> {
+        let corners = match self.kind {
+            1 => [[-1.0, -0.4], [1.0, -0.4], [1.0, 0.4], [-1.0, 0.4]].to_vec(),
+            _ => [[-1.0, -0.5], [0.8, -0.7], [0.1, 0.9]].to_vec(),
+        };
+        let placed = |[x, y]: [f64; 2]| [self.centre.x + self.size * x, self.centre.y + self.size * y];
+        corners.into_iter().map(placed).collect()
+    }
+
+    fn obstacle(&self) -> Obstacle {
+        let (centre, radius) = (self.centre, self.size);
+        let corners = self.corners().into_iter().map(DVec2::from_array);
+        Obstacle {
+            name: "post".into(),
+            shape: match self.kind {
+                0 => ObstacleShape::Disc { centre, radius },
+                _ => ObstacleShape::Polygon(Polygon::new(corners.collect()).expect("a polygon")),
+            },
+            heights: self.heights,
+        }
+    }
+
+    /// The distance of an axis by the library; 0 where it meets the obstacle.
+    fn distance(&self, ends: [[f64; 3]; 2]) -> f64 {
+        match self.kind {
+            0 => distance_to_cylinder(ends, self.centre.to_array(), self.size, self.heights),
+            _ => distance_to_prism(ends, &self.corners(), self.heights),
+        }
+    }
+}
+
 /// Obstacles keep the distance that a library measures in space, and the name of the nearest one is told.
 #[test]
 fn obstacles_are_as_far_as_a_library_measures() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(13));
+    let mut random = Random::new(13);
     let (mut nearest, mut overlapping) = ([0; 3], 0);
     for round in 0..6000 {
         let architecture = Architecture::ALL[round % Architecture::ALL.len()];
-        let (settings, design) = random.subject(architecture);
+        let (mut settings, design) = random.subject(architecture);
         let free = Model::new(settings.clone()).expect("the grids fit the rotation range");
         let pose = random.pose();
         let Ok(alone) = free.pose(&design, &pose) else { continue };
         if alone.values[PoseScalar::Reach] < 1e-9 {
             continue;
         }
-        let centre = DVec2::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0));
-        let low = random.between(-0.5, 0.3);
-        let heights = [low, low + random.between(0.01, 0.5)];
         let kind = round % 3;
-        let size = random.between(0.05, 0.6);
-        let corners = match kind {
-            1 => [[-1.0, -0.4], [1.0, -0.4], [1.0, 0.4], [-1.0, 0.4]].to_vec(),
-            _ => [[-1.0, -0.5], [0.8, -0.7], [0.1, 0.9]].to_vec(),
-        };
-        let corners: Vec<[f64; 2]> = corners
-            .into_iter()
-            .map(|[x, y]| [centre.x + size * x, centre.y + size * y])
-            .collect();
-        let shape = match kind {
-            0 => ObstacleShape::Disc { centre, radius: size },
-            _ => {
-                let corners = corners.iter().map(|&corner| DVec2::from_array(corner));
-                ObstacleShape::Polygon(Polygon::new(corners.collect()).expect("a polygon"))
-            }
-        };
-        let mut settings = settings;
-        settings.surroundings.obstacles = vec![Obstacle {
-            name: "post".into(),
-            shape,
-            heights,
-        }];
+        let post = Post::new(kind, &mut random);
+        settings.surroundings.obstacles = vec![post.obstacle()];
         let model = Model::new(settings).expect("the grids fit the rotation range");
         let members = model.members(&design, &pose).expect("reachable");
         let manipulator = Manipulator::<AnyLeg>::new(&design, &model.settings().legs);
@@ -247,19 +279,13 @@ fn obstacles_are_as_far_as_a_library_measures() {
         let capsules = model.bodies_of(&design).capsules(&manipulator, pose.position, &posture);
         assert_eq!(members.len(), capsules.len());
         let wanted = capsules.iter().map(|capsule| {
-            let ends = [capsule.from, capsule.to].map(|end| end.to_array());
-            let distance = match kind {
-                0 => distance_to_cylinder(ends, centre.to_array(), size, heights),
-                _ => distance_to_prism(ends, &corners, heights),
-            };
+            let distance = post.distance([capsule.from, capsule.to].map(|end| end.to_array()));
             // Where the axis meets the obstacle, only the sign is known.
             (distance, distance - capsule.radius)
         });
         let wanted: Vec<(f64, f64)> = wanted.collect();
-        let least = wanted
-            .iter()
-            .map(|(_, clearance)| *clearance)
-            .fold(alone.nearest.distance, f64::min);
+        let clearances = wanted.iter().map(|(_, clearance)| *clearance);
+        let least = clearances.fold(alone.nearest.distance, f64::min);
         let meets = wanted.iter().any(|(distance, _)| *distance == 0.0);
         let found = model.pose(&design, &pose).expect("reachable").nearest;
         let lanes = in_lanes(&model, &design, &pose).expect("a reachable pose");
@@ -267,45 +293,33 @@ fn obstacles_are_as_far_as_a_library_measures() {
             (lanes - found.distance).abs() < 1e-9,
             "{design} at {pose:?}: {lanes} and {found:?}"
         );
-        if meets {
-            overlapping += 1;
-            assert!(
-                found.distance <= least + TOLERANCE,
-                "{design} at {pose:?}: {found:?}, not {least}"
-            );
-        } else {
-            assert!(
-                (found.distance - least).abs() < TOLERANCE,
-                "{design} at {pose:?}: {found:?}, not {least}"
-            );
-        }
+        overlapping += usize::from(meets);
+        let agrees = match meets {
+            true => found.distance <= least + TOLERANCE,
+            false => (found.distance - least).abs() < TOLERANCE,
+        };
+        assert!(agrees, "{design} at {pose:?}: {found:?}, not {least}");
         if found.distance < alone.nearest.distance {
             assert_eq!(found.pair()[1], "post");
             nearest[kind] += 1;
             // The points between which it is measured are as far apart.
             let apart = found.between[0].distance(found.between[1]);
-            let radius = capsules
-                .iter()
-                .find(|capsule| capsule.member == found.member)
-                .map_or(0.0, |capsule| capsule.radius);
+            let own = capsules.iter().find(|capsule| capsule.member == found.member);
+            let radius = own.map_or(0.0, |capsule| capsule.radius);
             assert!(
                 meets || (apart - radius - found.distance).abs() < 1e-6,
                 "{design}: {found:?}"
             );
         }
     }
-    assert!(
-        nearest.iter().all(|count| *count > 30) && overlapping > 40,
-        "{nearest:?}, {overlapping}"
-    );
+    let are_all_seen = nearest.iter().all(|count| *count > 30) && overlapping > 40;
+    assert!(are_all_seen, "{nearest:?}, {overlapping}");
 }
 
 /// A member that leaves the room has a clearance below 0, and one within it the distance from the walls.
 #[test]
 fn the_room_is_not_left() {
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     // An L without its upper right quarter.
     let corners = [
         [-4.0, -4.0],
@@ -330,7 +344,7 @@ fn the_room_is_not_left() {
 /// Bars thickened until they touch have zero clearance, and bars thickened further overlap by the excess.
 #[test]
 fn touching_is_zero() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(11));
+    let mut random = Random::new(11);
     for &architecture in Architecture::ALL {
         let mut touched = 0;
         let (tries, least) = if Architecture::PAPER.contains(&architecture) {

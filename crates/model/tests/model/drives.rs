@@ -2,10 +2,12 @@
 
 use kinefront_model::dynamics::{Drive, DriveCatalogue, MotionLaw, Task, TaskShape, TaskTiming};
 use kinefront_model::evaluation::{
-    Bound, GridChoice, Model, ModelSettings, Quantity, QuantityLimit, TaskFigures, largest_of_legs,
+    Evaluation, GridChoice, Model, ModelSettings, Quantity, TaskFigures, largest_of_legs,
 };
 use kinefront_model::mechanism::{Design, JointKind, JointMasses};
 use kinefront_testkit::numbers as random_numbers;
+
+use super::strategies::{at_most, parsed};
 
 /// Designs with motors on the base, at the elbow and at the platform, that slide and that turn.
 const DESIGNS: [&str; 6] = [
@@ -34,10 +36,7 @@ fn settings() -> ModelSettings {
             samples: 60,
             timing: TaskTiming::Cycle(3.0),
         }),
-        limits: vec![QuantityLimit {
-            quantity: Quantity::DriveUtilization,
-            bound: Bound::AtMost(1.0),
-        }],
+        limits: vec![at_most(Quantity::DriveUtilization, 1.0)],
         quantities: [Quantity::DriveMass, Quantity::DriveUtilization].into_iter().collect(),
         ..ModelSettings::default()
     };
@@ -72,12 +71,45 @@ fn utilization(drive: &Drive, figures: &TaskFigures) -> f64 {
     shares.into_iter().fold(0.0, f64::max)
 }
 
+/// Drives of any size, of which a quarter are of the other kind.
+fn random_drives(random: &mut impl FnMut() -> f64, kind: JointKind, force: f64, speed: f64) -> DriveCatalogue {
+    let drive = |place: usize| {
+        let size = 0.05 + 3.0 * random() * random();
+        Drive {
+            name: format!("drive {place}"),
+            kind: if place % 4 == 3 { other(kind) } else { kind },
+            rated: force * size,
+            peak: force * size * (1.5 + random()),
+            speed: speed * (0.8 + random()),
+            inertia: 3.0 * size * random(),
+            mass: 0.2 + 10.0 * size * random(),
+        }
+    };
+    DriveCatalogue::new((0..12).map(drive).collect()).expect("a catalogue")
+}
+
+/// Asserts that the parts that are ordered name the drive that was selected, and that their masses sum to that of the design.
+fn assert_ordered(model: &Model, evaluation: &Evaluation, drive: &Drive, mass: f64) {
+    let parts = model.parts(&evaluation.design, evaluation.drive);
+    let ordered = parts.iter().find_map(|part| part.drive.as_ref());
+    assert_eq!(ordered, evaluation.drive.map(|_| &drive.name));
+    if evaluation.drive.is_some() {
+        let counted = parts.iter().filter(|part| part.counts);
+        let total: f64 = counted.map(|part| part.total_mass()).sum();
+        assert!(
+            (total - mass).abs() <= 1e-12 * mass,
+            "{}: {total} kg",
+            evaluation.design
+        );
+    }
+}
+
 #[test]
 fn the_lightest_drive_that_carries_the_motion_is_selected() {
     let mut random = random_numbers(7);
     let (mut counts, mut reserved) = ([0; 2], 0);
     for text in DESIGNS {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let kind = design.architecture().actuator();
         let needed = alone(&design, &light(kind)).0;
         let force = largest_of_legs(needed.rms_force);
@@ -87,48 +119,27 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
             let weakness = if round == 3 { 0.05 } else { 1.0 };
             // The study may leave a reserve.
             let allowed = if round == 1 || round == 2 { 0.8 } else { 1.0 };
-            let mut drives = Vec::new();
-            for place in 0..12 {
-                let size = 0.05 + 3.0 * random() * random();
-                drives.push(Drive {
-                    name: format!("drive {place}"),
-                    kind: if place % 4 == 3 { other(kind) } else { kind },
-                    rated: weakness * force * size,
-                    peak: weakness * force * size * (1.5 + random()),
-                    speed: speed * (0.8 + random()),
-                    inertia: 3.0 * size * random(),
-                    mass: 0.2 + 10.0 * size * random(),
-                });
-            }
-            let catalogue = DriveCatalogue::new(drives).expect("a catalogue");
+            let catalogue = random_drives(&mut random, kind, weakness * force, speed);
             let model = Model::new(ModelSettings {
                 drive_catalogue: catalogue.clone(),
-                limits: vec![QuantityLimit {
-                    quantity: Quantity::DriveUtilization,
-                    bound: Bound::AtMost(allowed),
-                }],
+                limits: vec![at_most(Quantity::DriveUtilization, allowed)],
                 ..settings()
             })
             .expect("a model");
             let evaluation = model.evaluate(&design, GridChoice::Reference);
-            let tried: Vec<(usize, f64, f64)> = catalogue
-                .of_kind(kind)
-                .map(|(place, drive)| {
-                    let (figures, mass) = alone(&design, drive);
-                    (place, utilization(drive, &figures), mass)
-                })
-                .collect();
+            let try_alone = |(place, drive)| {
+                let (figures, mass) = alone(&design, drive);
+                (place, utilization(drive, &figures), mass)
+            };
+            let tried: Vec<(usize, f64, f64)> = catalogue.of_kind(kind).map(try_alone).collect();
             let wanted = tried.iter().find(|(_, used, _)| *used <= allowed);
             let without_reserve = tried.iter().find(|(_, used, _)| *used <= 1.0);
             reserved += usize::from(wanted.is_some() && wanted != without_reserve);
             let least = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("drives");
             // One that carries the motion without the reserve is selected, but does not make the design feasible.
             let selected = wanted.or(Some(least).filter(|(_, used, _)| *used <= 1.0));
-            assert_eq!(
-                evaluation.drive,
-                selected.map(|(place, ..)| *place),
-                "{design}: {tried:?}"
-            );
+            let selected = selected.map(|(place, ..)| *place);
+            assert_eq!(evaluation.drive, selected, "{design}: {tried:?}");
             assert_eq!(evaluation.is_feasible(), wanted.is_some(), "{design}");
             let found = evaluation.quantities.get(Quantity::DriveUtilization).expect("a number");
             let (place, used, mass) = wanted.unwrap_or(least);
@@ -140,15 +151,7 @@ fn the_lightest_drive_that_carries_the_motion_is_selected() {
             assert_eq!(evaluation.quantities.get(Quantity::DriveMass), Some(drive.mass));
             assert!((evaluation.mass() - mass).abs() <= 1e-12 * mass, "{design}: {mass}");
             counts[usize::from(wanted.is_some())] += 1;
-            // The parts that are ordered name it, and their masses sum to that of the design.
-            let parts = model.parts(&design, evaluation.drive);
-            let ordered = parts.iter().find_map(|part| part.drive.as_ref());
-            assert_eq!(ordered, selected.map(|_| &drive.name));
-            if selected.is_some() {
-                let counted = parts.iter().filter(|part| part.counts);
-                let total: f64 = counted.map(|part| part.total_mass()).sum();
-                assert!((total - mass).abs() <= 1e-12 * mass, "{design}: {total} kg");
-            }
+            assert_ordered(&model, &evaluation, drive, *mass);
             // What follows the motion afterwards does so with the same drive.
             let (outcome, samples) = model.follow_task(&evaluation).expect("a motion");
             assert_eq!(outcome.drive.expect("a drive").place, *place);
@@ -184,13 +187,9 @@ fn other(kind: JointKind) -> JointKind {
 /// In the shortest cycle all limits are kept, and a cycle that is a little shorter misses the one that sets it.
 #[test]
 fn the_shortest_cycle_just_keeps_the_limits() {
-    let limit = |quantity: Quantity, most: f64| QuantityLimit {
-        quantity,
-        bound: Bound::AtMost(most),
-    };
     let mut set_by = Vec::new();
     for text in DESIGNS {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let (speed, force) = match design.architecture().actuator() {
             JointKind::Prismatic => (Quantity::PathSpeed, Quantity::PathForce),
             JointKind::Revolute => (Quantity::PathRate, Quantity::PathTorque),
@@ -199,15 +198,15 @@ fn the_shortest_cycle_just_keeps_the_limits() {
         let (now, _) = alone(&design, &light(design.architecture().actuator()));
         let at = [now.peak_speed, now.peak_force].map(largest_of_legs);
         for limits in [
-            vec![limit(speed, 0.6 * at[0])],
+            vec![at_most(speed, 0.6 * at[0])],
             vec![
-                limit(speed, 4.0 * at[0]),
-                limit(force, 3.0 * at[1]),
-                limit(Quantity::CornerPower, 2.0 * at[0] * at[1]),
+                at_most(speed, 4.0 * at[0]),
+                at_most(force, 3.0 * at[1]),
+                at_most(Quantity::CornerPower, 2.0 * at[0] * at[1]),
             ],
             vec![
-                limit(Quantity::CycleEnergy, 1.5 * now.energy_shared),
-                limit(speed, 20.0 * at[0]),
+                at_most(Quantity::CycleEnergy, 1.5 * now.energy_shared),
+                at_most(speed, 20.0 * at[0]),
             ],
         ] {
             let with = |time: f64| {
@@ -233,7 +232,7 @@ fn the_shortest_cycle_just_keeps_the_limits() {
             assert!(missed < 0.0, "{design}: {shortest:?} could be shorter: {missed}");
         }
         // Without a limit there is no shortest cycle, and none keeps a force below the one that gravity asks for.
-        for limits in [Vec::new(), vec![limit(force, 1e-3)]] {
+        for limits in [Vec::new(), vec![at_most(force, 1e-3)]] {
             let mut settings = settings();
             settings.limits = limits;
             let model = Model::new(settings).expect("a model");

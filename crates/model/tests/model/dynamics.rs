@@ -3,36 +3,15 @@
 
 use glam::DVec2;
 use kinefront_model::dynamics::{
-    Anywhere, DriveInertia, DynamicsSettings, ErrorBudget, Motion, MotionLaw, Payload, Task, TaskFrame, TaskShape,
-    TaskTiming, Tolerances,
+    Anywhere, DriveInertia, DynamicsReport, DynamicsSettings, ErrorBudget, Motion, MotionLaw, Payload, Task, TaskFrame,
+    TaskShape, TaskTiming, Tolerances,
 };
-use kinefront_model::evaluation::{Model, TaskSample};
-use kinefront_model::mechanism::{Architecture, Design, JointKind};
-use kinefront_model::spatial::Pose;
+use kinefront_model::evaluation::{Model, TaskFigures, TaskSample};
+use kinefront_model::mechanism::JointKind;
 use serde_json::Value;
 
-use super::reference::{fixture, number};
+use super::reference::{cases_of, design, number, numbers, pose_at};
 use super::strategies;
-
-fn numbers<const N: usize>(value: &Value) -> [f64; N] {
-    std::array::from_fn(|k| number(&value[k]))
-}
-
-fn cases() -> Vec<Value> {
-    fixture("task_cases.json")["cases"].as_array().expect("cases").clone()
-}
-
-fn design(case: &Value) -> Design {
-    let dimensions = ["R", "r", "Lb", "rj", "rp"].map(|key| number(&case["design"][key]));
-    let architecture: Architecture = case["architecture"]
-        .as_str()
-        .expect("a name")
-        .parse()
-        .expect("an architecture");
-    let plus = numbers::<3>(&case["working_mode"]).map(|sign| sign > 0.0);
-    let mode = kinefront_model::mechanism::WorkingMode::new(plus);
-    Design::new(architecture, mode, dimensions).expect("a design")
-}
 
 /// The settings of a case, whose short names are those of the drives of its architecture.
 fn settings(case: &Value) -> DynamicsSettings {
@@ -106,59 +85,35 @@ fn matrix(value: &Value) -> Vec<f64> {
 
 #[test]
 fn poses_agree() {
-    for case in cases() {
+    for case in cases_of("task_cases.json", "cases") {
         let (design, model) = (design(&case), model(&case));
         let posed = model.posed(&design);
         for wanted in case["poses"].as_array().expect("poses") {
             let at = &wanted["pose"];
-            let pose = Pose::new(number(&at["x"]), number(&at["y"]), number(&at["phi_deg"]).to_radians());
             let name = |what: &str| format!("{design} at {at}: {what}");
-            let dynamics = posed.dynamics_at(&pose).expect("reached").expect("stiff");
+            let dynamics = posed.dynamics_at(&pose_at(at)).expect("reached").expect("stiff");
             let motion = Motion {
                 twist: numbers(&wanted["twist"]),
                 acceleration: numbers(&wanted["acceleration"]),
             };
             let response = dynamics.response(&motion);
             let report = dynamics.report().expect("regular");
-            agree(
-                &dynamics.actuators(),
-                &numbers::<3>(&wanted["actuators"]),
-                1e-9,
-                &name("actuators"),
-            );
-            agree(
-                &response.speeds,
-                &numbers::<3>(&wanted["actuator_speeds"]),
-                1e-9,
-                &name("speeds"),
-            );
-            let accelerations = numbers::<3>(&wanted["actuator_accelerations"]);
-            agree(&response.accelerations, &accelerations, 1e-9, &name("accelerations"));
-            agree(
-                &response.forces,
-                &numbers::<3>(&wanted["actuator_forces"]),
-                1e-8,
-                &name("forces"),
-            );
-            agree(
-                report.rigid_mass.as_flattened(),
-                &matrix(&wanted["mass_rigid"]),
-                1e-8,
-                &name("rigid mass"),
-            );
-            let out_of_plane = matrix(&wanted["mass_out_of_plane"]);
-            agree(
-                report.mass_out_of_plane.as_flattened(),
-                &out_of_plane,
-                1e-8,
-                &name("mass out of plane"),
-            );
-            agree(
-                report.mass_in_plane.as_flattened(),
-                &matrix(&wanted["mass_in_plane"]),
-                1e-8,
-                &name("mass in plane"),
-            );
+            let actuators = dynamics.actuators();
+            for (found, key, tolerance) in [
+                (&actuators, "actuators", 1e-9),
+                (&response.speeds, "actuator_speeds", 1e-9),
+                (&response.accelerations, "actuator_accelerations", 1e-9),
+                (&response.forces, "actuator_forces", 1e-8),
+            ] {
+                agree(found, &numbers::<3>(&wanted[key]), tolerance, &name(key));
+            }
+            for (found, key) in [
+                (&report.rigid_mass, "mass_rigid"),
+                (&report.mass_out_of_plane, "mass_out_of_plane"),
+                (&report.mass_in_plane, "mass_in_plane"),
+            ] {
+                agree(found.as_flattened(), &matrix(&wanted[key]), 1e-8, &name(key));
+            }
             let [in_plane, out_of_plane] = report.frequencies.expect("rigid rails");
             for (found, key) in [
                 (in_plane, "frequencies_in_plane_hz"),
@@ -168,46 +123,42 @@ fn poses_agree() {
                     agree(&[*found], &[wanted], 1e-7, &name(key));
                 }
             }
-            agree(
-                &[report.bar_frequency],
-                &[number(&wanted["bar_frequency_hz"])],
-                1e-7,
-                &name("bar frequency"),
-            );
-            let gains = &report.gains;
-            for (found, key) in [
-                (gains.speed[0], "speed_gain"),
-                (gains.speed[1], "speed_gain_phi"),
-                (gains.force[0], "force_gain"),
-                (gains.force[1], "force_gain_phi"),
-                (gains.inertia[0], "inertia_gain"),
-                (gains.inertia[1], "inertia_gain_phi"),
-                (report.anywhere_speed, "speed"),
-                (report.anywhere_force, "force"),
-            ] {
-                agree(&[found], &[number(&wanted["figures"][key])], 1e-8, &name(key));
-            }
-            let accuracy = &report.accuracy;
-            for (found, key) in [
-                (accuracy.worst_position, "worst_xy_m"),
-                (accuracy.worst_orientation, "worst_phi_rad"),
-                (accuracy.rms_position, "rms_xy_m"),
-                (accuracy.rms_orientation, "rms_phi_rad"),
-                (accuracy.nonlinearity, "eta"),
-            ] {
-                agree(&[found], &[number(&wanted["error"][key])], 1e-7, &name(key));
-            }
-            // The parts of an error sum to it, and the ellipse has the root mean square of the error as its size.
-            let sum = |budget: ErrorBudget| budget.parts().iter().map(|(_, part)| part).sum::<f64>();
-            let [xx, yy, _] = accuracy.covariance;
-            for (found, whole) in [
-                (sum(accuracy.budget_position), accuracy.worst_position),
-                (sum(accuracy.budget_orientation), accuracy.worst_orientation),
-                ((xx + yy).sqrt(), accuracy.rms_position),
-            ] {
-                agree(&[found], &[whole], 1e-12, &name("budget"));
-            }
+            figures_agree(&report, wanted, &name);
         }
+    }
+}
+
+/// Asserts that the numbers of a pose as a whole agree: the frequency of its bars, its gains, and its error.
+fn figures_agree(report: &DynamicsReport, wanted: &Value, name: &dyn Fn(&str) -> String) {
+    let (gains, accuracy) = (&report.gains, &report.accuracy);
+    let (figures, error) = (&wanted["figures"], &wanted["error"]);
+    for (found, of, key, tolerance) in [
+        (report.bar_frequency, wanted, "bar_frequency_hz", 1e-7),
+        (gains.speed[0], figures, "speed_gain", 1e-8),
+        (gains.speed[1], figures, "speed_gain_phi", 1e-8),
+        (gains.force[0], figures, "force_gain", 1e-8),
+        (gains.force[1], figures, "force_gain_phi", 1e-8),
+        (gains.inertia[0], figures, "inertia_gain", 1e-8),
+        (gains.inertia[1], figures, "inertia_gain_phi", 1e-8),
+        (report.anywhere_speed, figures, "speed", 1e-8),
+        (report.anywhere_force, figures, "force", 1e-8),
+        (accuracy.worst_position, error, "worst_xy_m", 1e-7),
+        (accuracy.worst_orientation, error, "worst_phi_rad", 1e-7),
+        (accuracy.rms_position, error, "rms_xy_m", 1e-7),
+        (accuracy.rms_orientation, error, "rms_phi_rad", 1e-7),
+        (accuracy.nonlinearity, error, "eta", 1e-7),
+    ] {
+        agree(&[found], &[number(&of[key])], tolerance, &name(key));
+    }
+    // The parts of an error sum to it, and the ellipse has the root mean square of the error as its size.
+    let sum = |budget: ErrorBudget| budget.parts().iter().map(|(_, part)| part).sum::<f64>();
+    let [xx, yy, _] = accuracy.covariance;
+    for (found, whole) in [
+        (sum(accuracy.budget_position), accuracy.worst_position),
+        (sum(accuracy.budget_orientation), accuracy.worst_orientation),
+        ((xx + yy).sqrt(), accuracy.rms_position),
+    ] {
+        agree(&[found], &[whole], 1e-12, &name("budget"));
     }
 }
 
@@ -221,17 +172,14 @@ fn task(value: &Value) -> Task {
             "pick_and_place" => TaskShape::PickAndPlace {
                 swing: or("swing_deg", 0.0).to_radians(),
             },
-            _ => TaskShape::Waypoints(
-                value["waypoints"]
-                    .as_array()
-                    .expect("points")
-                    .iter()
-                    .map(|point| {
-                        let [x, y, phi_deg] = numbers(point);
-                        [x, y, f64::to_radians(phi_deg)]
-                    })
-                    .collect(),
-            ),
+            _ => {
+                let point = |point: &Value| {
+                    let [x, y, phi_deg] = numbers(point);
+                    [x, y, f64::to_radians(phi_deg)]
+                };
+                let points = value["waypoints"].as_array().expect("points").iter();
+                TaskShape::Waypoints(points.map(point).collect())
+            }
         },
         share: or("share", 0.8),
         angle: or("angle_deg", 0.0).to_radians(),
@@ -276,18 +224,46 @@ fn sample_agrees(found: &TaskSample, wanted: &Value, name: &str) {
         (&response.accelerations, "actuator_accelerations", 1e-8),
         (&response.forces, "actuator_forces", 1e-8),
     ] {
-        agree(
-            values,
-            &numbers::<3>(&wanted[key]),
-            tolerance,
-            &format!("{name}: {key}"),
+        let wanted = numbers::<3>(&wanted[key]);
+        agree(values, &wanted, tolerance, &format!("{name}: {key}"));
+    }
+}
+
+/// Asserts that what a motion asks of the drives agrees.
+fn task_figures_agree(figures: &TaskFigures, wanted: &Value, name: &str) {
+    let largest = number(&wanted["energy_each_j"]);
+    for (found, key, scale) in [
+        (figures.path_reach, "path_reach_m", None),
+        (figures.corner_power, "corner_power_w", None),
+        (figures.peak_power_total, "peak_power_total_w", None),
+        (figures.energy_each, "energy_each_j", None),
+        (figures.energy_shared, "energy_shared_j", None),
+        (figures.energy_net, "energy_net_j", Some(largest)),
+    ] {
+        // The net energy is the difference of large numbers.
+        let scale = scale.unwrap_or(number(&wanted[key]).abs());
+        let off = (found - number(&wanted[key])).abs() / scale;
+        assert!(
+            off < 1e-7,
+            "{name}: {key} {found} instead of {}, off by {off:e}",
+            wanted[key]
         );
+    }
+    for (found, key) in [
+        (&figures.peak_speed, "peak_speed"),
+        (&figures.peak_acceleration, "peak_acceleration"),
+        (&figures.peak_force, "peak_force"),
+        (&figures.rms_force, "rms_force"),
+        (&figures.peak_power, "peak_power_w"),
+        (&figures.stroke, "stroke"),
+    ] {
+        agree(found, &numbers::<3>(&wanted[key]), 1e-7, &format!("{name}: {key}"));
     }
 }
 
 #[test]
 fn motions_agree() {
-    for case in cases() {
+    for case in cases_of("task_cases.json", "cases") {
         let (design, model) = (design(&case), model(&case));
         let posed = model.posed(&design);
         for motion in case["motions"].as_array().expect("motions") {
@@ -303,13 +279,13 @@ fn motions_agree() {
             };
             let (outcome, samples) = posed.follow(&task(&motion["task"]), &frame);
             let moved = outcome.motion.expect("a motion");
-            let pieces: Vec<f64> = wanted["pieces_s"]
-                .as_array()
-                .expect("pieces")
-                .iter()
-                .map(number)
-                .collect();
-            agree(moved.durations(), &pieces, 1e-9, &name);
+            let pieces = wanted["pieces_s"].as_array().expect("pieces").iter();
+            agree(
+                moved.durations(),
+                &pieces.map(number).collect::<Vec<f64>>(),
+                1e-9,
+                &name,
+            );
             match outcome.result.expect("a result") {
                 Err(failure) => {
                     assert_eq!(wanted["ok"], false, "{name}");
@@ -331,34 +307,7 @@ fn motions_agree() {
                     assert_eq!(wanted["ok"], true, "{name}");
                     assert_eq!(wanted["inside_workspace"], figures.inside_workspace, "{name}");
                     agree(&[moved.cycle_time()], &[number(&wanted["cycle_time_s"])], 1e-9, &name);
-                    let largest = number(&wanted["energy_each_j"]);
-                    for (found, key, scale) in [
-                        (figures.path_reach, "path_reach_m", None),
-                        (figures.corner_power, "corner_power_w", None),
-                        (figures.peak_power_total, "peak_power_total_w", None),
-                        (figures.energy_each, "energy_each_j", None),
-                        (figures.energy_shared, "energy_shared_j", None),
-                        (figures.energy_net, "energy_net_j", Some(largest)),
-                    ] {
-                        // The net energy is the difference of large numbers.
-                        let scale = scale.unwrap_or(number(&wanted[key]).abs());
-                        let off = (found - number(&wanted[key])).abs() / scale;
-                        assert!(
-                            off < 1e-7,
-                            "{name}: {key} {found} instead of {}, off by {off:e}",
-                            wanted[key]
-                        );
-                    }
-                    for (found, key) in [
-                        (&figures.peak_speed, "peak_speed"),
-                        (&figures.peak_acceleration, "peak_acceleration"),
-                        (&figures.peak_force, "peak_force"),
-                        (&figures.rms_force, "rms_force"),
-                        (&figures.peak_power, "peak_power_w"),
-                        (&figures.stroke, "stroke"),
-                    ] {
-                        agree(found, &numbers::<3>(&wanted[key]), 1e-7, &format!("{name}: {key}"));
-                    }
+                    task_figures_agree(&figures, wanted, &name);
                     for wanted in wanted["samples"].as_array().expect("samples") {
                         let index = wanted["index"].as_u64().expect("an index") as usize;
                         sample_agrees(&samples[index], wanted, &name);

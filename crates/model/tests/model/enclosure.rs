@@ -2,21 +2,27 @@
 
 use kinefront_model::enclosure::{Comparison, EnclosedNumber, Interval, TaylorModel};
 use kinefront_model::lanes::Real;
+use kinefront_testkit::numbers as random_numbers;
 
-/// Numbers between −1 and 1 that look random, from a linear congruential generator.
-struct Numbers(u64);
+/// Numbers between −1 and 1 that look random.
+struct Numbers<F>(F);
 
-impl Numbers {
+/// The numbers that follow from a seed.
+fn numbers_from(seed: u64) -> Numbers<impl FnMut() -> f64> {
+    Numbers(random_numbers(seed))
+}
+
+impl<F: FnMut() -> f64> Numbers<F> {
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        2.0 * (self.0)() - 1.0
+    }
+
+    fn three(&mut self) -> [f64; 3] {
+        [(); 3].map(|()| self.next())
     }
 
     fn model(&mut self) -> TaylorModel {
-        let mut terms = || [self.next(), self.next(), self.next()].map(|term| 0.2 * term);
+        let mut terms = || self.three().map(|term| 0.2 * term);
         let (linear, square, mixed) = (terms(), terms(), terms());
         TaylorModel {
             constant: 2.0 + self.next(),
@@ -31,10 +37,10 @@ impl Numbers {
 /// A function that is enclosed by two models has its sum, product, reciprocal and root enclosed by theirs.
 #[test]
 fn operations_enclose_what_their_operands_enclose() {
-    let mut numbers = Numbers(1);
+    let mut numbers = numbers_from(1);
     for _ in 0..20_000 {
         let (a, b) = (numbers.model(), numbers.model());
-        let at = [numbers.next(), numbers.next(), numbers.next()];
+        let at = numbers.three();
         // The function lies anywhere within the remainder, often at its end.
         let mut within =
             |model: &TaylorModel| model.value(at) + model.remainder * (3.0 * numbers.next()).clamp(-1.0, 1.0);
@@ -64,7 +70,7 @@ fn operations_enclose_what_their_operands_enclose() {
 /// that is not so at every point.
 #[test]
 fn valleys_across_several_variables_are_decided() {
-    let mut numbers = Numbers(7);
+    let mut numbers = numbers_from(7);
     let square_of = |slopes: [f64; 3], centre: f64, least: f64| {
         let line = TaylorModel {
             constant: centre,
@@ -74,7 +80,7 @@ fn valleys_across_several_variables_are_decided() {
         line.squared().plus(Interval::exactly(least))
     };
     for _ in 0..2000 {
-        let slopes = [numbers.next(), numbers.next(), numbers.next()];
+        let slopes = numbers.three();
         let reach = slopes[0].abs() + slopes[1].abs() + slopes[2].abs();
         // Within the box, the line passes through 0.
         let centre = 0.9 * reach * numbers.next();
@@ -90,7 +96,7 @@ fn valleys_across_several_variables_are_decided() {
             continue;
         }
         positive += usize::from(model.range()[0] < 0.0);
-        let points = (0..200).map(|_| [numbers.next(), numbers.next(), numbers.next()]);
+        let points = (0..200).map(|_| numbers.three());
         let corners = (0..27).map(|index: usize| [index % 3, index / 3 % 3, index / 9].map(|part| part as f64 - 1.0));
         for point in points.collect::<Vec<_>>().into_iter().chain(corners) {
             assert!(model.value(point) > model.remainder, "{model:?} at {point:?}");
@@ -103,7 +109,7 @@ fn valleys_across_several_variables_are_decided() {
 /// The same of the numbers of the shared formulas, also where the box decides no comparison and where a root begins at 0.
 #[test]
 fn numbers_of_formulas_enclose_what_their_operands_enclose() {
-    let mut numbers = Numbers(3);
+    let mut numbers = numbers_from(3);
     let mut undecided = 0;
     for _ in 0..20_000 {
         let mut model = |middle: f64, size: f64| {
@@ -116,7 +122,7 @@ fn numbers_of_formulas_enclose_what_their_operands_enclose() {
         };
         // Numbers about 0, and one that is well above it.
         let (a, b, c) = (model(0.0, 1.0), model(0.0, 1.0), model(2.2, 2.0));
-        let at = [numbers.next(), numbers.next(), numbers.next()];
+        let at = numbers.three();
         let mut within =
             |number: &EnclosedNumber| number.0.value(at) + number.0.remainder * (3.0 * numbers.next()).clamp(-1.0, 1.0);
         let (x, y, z) = (within(&a), within(&b), within(&c));
@@ -176,7 +182,7 @@ fn nothing_follows_from_no_number() {
 /// The remainder of a result without width covers its rounding, which fused operations tell exactly.
 #[test]
 fn remainders_cover_rounding() {
-    let mut numbers = Numbers(2);
+    let mut numbers = numbers_from(2);
     for _ in 0..20_000 {
         let (x, y) = (1.5 + numbers.next(), 1.5 + numbers.next());
         let [a, b] = [x, y].map(TaylorModel::exactly);

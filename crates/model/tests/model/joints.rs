@@ -13,7 +13,12 @@ use super::strategies::{applicable_cases, design, leg_settings, pose};
 
 type Check = Result<(), TestCaseError>;
 
-fn actuators(design: &Design, manipulator: &Manipulator<AnyLeg>, pose: &Pose) -> Option<[f64; 3]> {
+fn not_applicable() -> TestCaseError {
+    TestCaseError::reject("the property does not apply")
+}
+
+/// The values of the actuated joints at a pose.
+pub fn actuators(design: &Design, manipulator: &Manipulator<AnyLeg>, pose: &Pose) -> Option<[f64; 3]> {
     let posture = manipulator.posture(pose).ok()?;
     let driven = design.architecture().driven();
     Some([0, 1, 2].map(|i| manipulator.legs[i].joint_values(&posture.legs[i])[driven]))
@@ -21,9 +26,7 @@ fn actuators(design: &Design, manipulator: &Manipulator<AnyLeg>, pose: &Pose) ->
 
 fn joints_close(design: &Design, settings: &LegSettings, pose: &Pose) -> Check {
     let manipulator = Manipulator::<AnyLeg>::new(design, settings);
-    let Ok(posture) = manipulator.posture(pose) else {
-        return Err(TestCaseError::reject("the property does not apply"));
-    };
+    let posture = manipulator.posture(pose).map_err(|_| not_applicable())?;
     let tolerance = 1e-12 * (design.base_radius() + design.link_length() + design.platform_radius());
     for (i, leg) in posture.legs.iter().enumerate() {
         let c = pose.position + posture.arms[i];
@@ -56,18 +59,12 @@ fn joints_close(design: &Design, settings: &LegSettings, pose: &Pose) -> Check {
 /// Compares `A t = B q̇` with central differences of the inverse kinematics.
 fn jacobian_is_the_derivative(design: &Design, settings: &LegSettings, pose: &Pose) -> Check {
     let manipulator = Manipulator::<AnyLeg>::new(design, settings);
-    let Ok(posture) = manipulator.posture(pose) else {
-        return Err(TestCaseError::reject("the property does not apply"));
-    };
+    let posture = manipulator.posture(pose).map_err(|_| not_applicable())?;
     let jacobian = Jacobian::new(&posture);
     // Finite differences are meaningless where a leg is nearly stretched out.
-    if posture.limit_margin < 0.02
-        || jacobian
-            .transmission
-            .iter()
-            .any(|transmission| transmission.abs() < 0.05)
-    {
-        return Err(TestCaseError::reject("the property does not apply"));
+    let is_stretched = |transmission: &f64| transmission.abs() < 0.05;
+    if posture.limit_margin < 0.02 || jacobian.transmission.iter().any(is_stretched) {
+        return Err(not_applicable());
     }
     let step = 1e-6;
     for (axis, row) in [(0, jacobian.ux), (1, jacobian.uy), (2, jacobian.moment)] {
@@ -81,7 +78,7 @@ fn jacobian_is_the_derivative(design: &Design, settings: &LegSettings, pose: &Po
             actuators(design, &manipulator, &moved)
         };
         let (Some(after), Some(before)) = (moved(1.0), moved(-1.0)) else {
-            return Err(TestCaseError::reject("the property does not apply"));
+            return Err(not_applicable());
         };
         for leg in 0..3 {
             let mut change = after[leg] - before[leg];
@@ -101,11 +98,9 @@ fn jacobian_is_the_derivative(design: &Design, settings: &LegSettings, pose: &Po
 
 fn forward_undoes_inverse(design: &Design, settings: &LegSettings, pose: &Pose) -> Check {
     let manipulator = Manipulator::<AnyLeg>::new(design, settings);
-    let Ok(posture) = manipulator.posture(pose) else {
-        return Err(TestCaseError::reject("the property does not apply"));
-    };
+    let posture = manipulator.posture(pose).map_err(|_| not_applicable())?;
     if Jacobian::new(&posture).inverse_condition(design.platform_radius()) < 0.1 || posture.limit_margin < 0.05 {
-        return Err(TestCaseError::reject("the property does not apply"));
+        return Err(not_applicable());
     }
     // Where `C_i` is near `A_i`, a pose on the other side of `A_i` has the same values and is as near to the start.
     if posture
@@ -113,7 +108,7 @@ fn forward_undoes_inverse(design: &Design, settings: &LegSettings, pose: &Pose) 
         .iter()
         .any(|leg| (leg.chain.c - leg.chain.a).length() < 0.05)
     {
-        return Err(TestCaseError::reject("the property does not apply"));
+        return Err(not_applicable());
     }
     let target = actuators(design, &manipulator, pose).expect("reachable");
     let start = Pose::new(pose.position.x + 1e-3, pose.position.y - 1e-3, pose.phi + 1e-3);
@@ -131,14 +126,12 @@ fn forward_undoes_inverse(design: &Design, settings: &LegSettings, pose: &Pose) 
 /// Compares `κ_F⁻¹` with its definition, computed with matrices and an inverse.
 fn condition_is_its_definition(design: &Design, pose: &Pose, length: f64) -> Check {
     let manipulator = Manipulator::<AnyLeg>::new(design, &LegSettings::default());
-    let Ok(posture) = manipulator.posture(pose) else {
-        return Err(TestCaseError::reject("the property does not apply"));
-    };
+    let posture = manipulator.posture(pose).map_err(|_| not_applicable())?;
     let jacobian = Jacobian::new(&posture);
     let value = jacobian.inverse_condition(length);
     prop_assert!((0.0..=1.0).contains(&value));
     if value < 1e-6 {
-        return Err(TestCaseError::reject("the property does not apply"));
+        return Err(not_applicable());
     }
     let scale = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, length));
     let inverse = jacobian.direct().try_inverse();

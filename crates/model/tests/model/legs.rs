@@ -1,48 +1,24 @@
 //! Every chain and actuated joint, compared with values from an independent program (tests/fixtures/README.md).
 
-use kinefront_model::evaluation::{GridChoice, Model, ModelSettings, PoseScalar};
+use kinefront_model::evaluation::{GridChoice, Model, ModelSettings};
 use kinefront_model::kinematics::Jacobian;
-use kinefront_model::mechanism::{
-    AnyLeg, Architecture, Arrangement, Design, FURTHER_VARIABLES, LegSettings, Manipulator, WorkingMode,
-};
+use kinefront_model::mechanism::{AnyLeg, Architecture, Arrangement, LegSettings, Manipulator};
 use kinefront_model::stiffness::StiffnessDefinition;
 use serde_json::Value;
 
-use super::reference::{close, difference, fixture, matrix, number, pose};
+use super::reference::{cases_of, close, design, difference, matrix, number, numbers, pose, stiffness_values_agree};
 use super::strategies;
-
-fn three(value: &Value) -> [f64; 3] {
-    [0, 1, 2].map(|k| number(&value[k]))
-}
-
-pub fn design(case: &Value) -> Design {
-    let values = ["R", "r", "Lb", "rj", "rp"].map(|key| number(&case["design"][key]));
-    let architecture: Architecture = case["architecture"]
-        .as_str()
-        .expect("a name")
-        .parse()
-        .expect("an architecture");
-    let mode = WorkingMode::new(three(&case["working_mode"]).map(|sign| sign > 0.0));
-    let design = Design::new(architecture, mode, values).expect("a valid design");
-    FURTHER_VARIABLES.into_iter().fold(design, |design, variable| {
-        match case["design"][variable.key()].as_f64() {
-            Some(value) if architecture.has(variable) => design.with(variable, value).expect("a valid value"),
-            _ => design,
-        }
-    })
-}
 
 pub fn settings(case: &Value) -> LegSettings {
     let geometry = &case["geometry"];
-    let pair = |value: &Value| [number(&value[0]), number(&value[1])];
     LegSettings {
         geometry: Arrangement {
-            base_angles_deg: three(&geometry["base_angles_deg"]),
-            base_radii: three(&geometry["base_radii"]),
-            platform_angles_deg: three(&geometry["platform_angles_deg"]),
-            platform_radii: three(&geometry["platform_radii"]),
-            rail_turn_deg: three(&geometry["rail_turn_deg"]),
-            rail: pair(&geometry["rail"]),
+            base_angles_deg: numbers(&geometry["base_angles_deg"]),
+            base_radii: numbers(&geometry["base_radii"]),
+            platform_angles_deg: numbers(&geometry["platform_angles_deg"]),
+            platform_radii: numbers(&geometry["platform_radii"]),
+            rail_turn_deg: numbers(&geometry["rail_turn_deg"]),
+            rail: numbers(&geometry["rail"]),
             ..Arrangement::PAPER
         }
         .into(),
@@ -58,8 +34,7 @@ pub fn model(case: &Value, change: impl FnOnce(&mut ModelSettings)) -> Model {
 }
 
 pub fn cases(kind: &str) -> Vec<Value> {
-    let cases = fixture("legs_cases.json");
-    let cases = cases[kind].as_array().expect("cases").clone();
+    let cases = cases_of("legs_cases.json", kind);
     assert_eq!(cases.len(), 36);
     for &architecture in Architecture::ALL {
         let of_one = cases.iter().filter(|case| case["architecture"] == architecture.name());
@@ -74,37 +49,29 @@ fn kinematics_agree() {
         let (design, pose) = (design(&case), pose(&case));
         let manipulator = Manipulator::<AnyLeg>::new(&design, &settings(&case));
         let posture = manipulator.posture(&pose).expect("reachable");
-        let what = |text: &str| format!("{design}: {text}");
+        let agree = |value: f64, wanted: &Value, text: &str| {
+            close(value, number(wanted), 1e-9, &format!("{design}: {text}"));
+        };
         for (index, leg) in posture.legs.iter().enumerate() {
             let values = manipulator.legs[index].joint_values(leg);
             for (joint, value) in values.into_iter().enumerate() {
-                close(value, number(&case["joints"][index][joint]), 1e-9, &what("joint"));
+                agree(value, &case["joints"][index][joint], "joint");
             }
             let driven = values[design.architecture().driven()];
-            close(driven, number(&case["actuators"][index]), 1e-9, &what("actuator"));
+            agree(driven, &case["actuators"][index], "actuator");
             for (point, key) in [(leg.chain.b, "B"), (leg.chain.c, "C")] {
-                close(point.x, number(&case[key][index][0]), 1e-9, &what(key));
-                close(point.y, number(&case[key][index][1]), 1e-9, &what(key));
+                agree(point.x, &case[key][index][0], key);
+                agree(point.y, &case[key][index][1], key);
             }
             let row = [leg.u.x, leg.u.y, leg.moment];
             for (column, value) in row.into_iter().enumerate() {
-                close(value, number(&case["A_rows"][index][column]), 1e-9, &what("row of A"));
+                agree(value, &case["A_rows"][index][column], "row of A");
             }
-            close(leg.transmission, number(&case["B_ii"][index]), 1e-9, &what("B"));
+            agree(leg.transmission, &case["B_ii"][index], "B");
         }
-        close(
-            posture.limit_margin,
-            number(&case["slack"]),
-            1e-9,
-            &what("limit margin"),
-        );
+        agree(posture.limit_margin, &case["slack"], "limit margin");
         let condition = Jacobian::new(&posture).inverse_condition(design.platform_radius());
-        close(
-            condition,
-            number(&case["inverse_condition"]),
-            1e-9,
-            &what("inverse condition"),
-        );
+        agree(condition, &case["inverse_condition"], "inverse condition");
     }
 }
 
@@ -119,20 +86,7 @@ fn stiffness_agrees() {
             model.stiffness_definition = StiffnessDefinition::Compliance
         });
         let free = compliant.pose(&design, &pose).expect("reachable").values;
-        for (value, key) in [
-            (report.values[PoseScalar::StiffnessXy], "k_xy"),
-            (report.values[PoseScalar::StiffnessZ], "k_z"),
-            (report.values[PoseScalar::StiffnessPhiZ], "k_phi_z"),
-            (free[PoseScalar::StiffnessXy], "k_xy_compliance"),
-            (free[PoseScalar::StiffnessZ], "k_z_compliance"),
-            (free[PoseScalar::StiffnessPhiZ], "k_phi_z_compliance"),
-        ] {
-            let wanted = number(&case[key]);
-            assert!(
-                (value / wanted - 1.0).abs() < 1e-8,
-                "{design}: {key} {value} instead of {wanted}"
-            );
-        }
+        stiffness_values_agree(&report.values, &free, &case, 1e-8, &design);
     }
 }
 

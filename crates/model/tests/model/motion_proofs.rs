@@ -2,18 +2,16 @@
 
 use glam::DVec2;
 use kinefront_model::certify::{MotionClaim, MotionVerdict};
-use kinefront_model::dynamics::{
-    DriveInertia, DynamicsSettings, MotionLaw, Payload, Task, TaskFrame, TaskShape, TaskTiming,
-};
-use kinefront_model::evaluation::{
-    Bound, Model, PoseScalar, Quantity, QuantityLimit, TaskFigures, TaskOutcome, largest_of_legs,
-};
+use kinefront_model::dynamics::{DynamicsSettings, MotionLaw, Task, TaskFrame, TaskShape, TaskTiming};
+use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar, Quantity, TaskOutcome, largest_of_legs};
 use kinefront_model::mechanism::{Architecture, Design, JointKind};
 use kinefront_model::spatial::Pose;
 use kinefront_testkit::{numbers as random_numbers, repetitions};
 
-use super::legs::{cases, design, model as model_of};
-use super::reference::pose as pose_of;
+use super::legs::{cases, model as model_of};
+use super::motion::{DRIVES, PAYLOAD};
+use super::reference::{design, pose as pose_of};
+use super::strategies::at_most;
 
 const TRAPEZOID: MotionLaw = MotionLaw::Trapezoid { blend: 0.3, ramp: 0.2 };
 
@@ -35,6 +33,13 @@ fn sideways(pose: &Pose, reach: f64, law: MotionLaw, samples: usize) -> Task {
     }
 }
 
+fn sampled(task: &Task, samples: usize) -> Task {
+    Task {
+        samples,
+        ..task.clone()
+    }
+}
+
 /// The frame of a circle about a pose.
 fn about(pose: &Pose, reach: f64, design: &Design) -> TaskFrame {
     TaskFrame {
@@ -51,18 +56,10 @@ fn follow(model: &Model, design: &Design, task: &Task, frame: &TaskFrame) -> Tas
     model.posed(design).follow(task, frame).0
 }
 
-fn moving(model: &mut kinefront_model::evaluation::ModelSettings) {
+fn moving(model: &mut ModelSettings) {
     model.dynamics = DynamicsSettings {
-        payload: Payload {
-            mass: 4.0,
-            inertia: 0.2,
-            centre: [0.11, -0.07],
-        },
-        drives: DriveInertia {
-            slider_mass: 1.5,
-            prismatic: 0.7,
-            revolute: 0.3,
-        },
+        payload: PAYLOAD,
+        drives: DRIVES,
         gravity: [0.0, -9.81, 0.0],
         tool: [20.0, -10.0, 3.0],
         ..DynamicsSettings::default()
@@ -77,16 +74,14 @@ fn for_all(mut check: impl FnMut(&Model, &Design, &Pose, f64)) {
         let poses = cases.iter().filter_map(|case| {
             let (design, pose) = (design(case), pose_of(case));
             let model = model_of(case, moving);
-            let found = model.pose(&design, &pose).ok()?;
-            let clear = (found.values[PoseScalar::Reach] / design.base_radius()).min(0.05);
-            let is_other = design.architecture() != architecture;
-            (!is_other).then(|| (clear.min(found.values[PoseScalar::Dexterity]), model, design, pose))
+            let values = model.pose(&design, &pose).ok()?.values;
+            let room = values[PoseScalar::Reach];
+            let clear = (room / design.base_radius()).min(0.05);
+            let key = clear.min(values[PoseScalar::Dexterity]);
+            (design.architecture() == architecture).then_some((key, room, model, design, pose))
         });
         let best = poses.max_by(|a, b| a.0.total_cmp(&b.0));
-        let (_, model, design, pose) = best.unwrap_or_else(|| panic!("no pose of {}", architecture.name()));
-        let room = model
-            .pose(&design, &pose)
-            .map_or(0.0, |found| found.values[PoseScalar::Reach]);
+        let (_, room, model, design, pose) = best.unwrap_or_else(|| panic!("no pose of {}", architecture.name()));
         check(&model, &design, &pose, (0.1 * room).min(0.02 * design.base_radius()));
     }
 }
@@ -107,24 +102,14 @@ fn a_proved_motion_keeps_its_bounds_at_every_moment() {
                 let name = format!("{design} along {:?} by {law:?}", task.shape);
                 assert!(outcome.figures().is_some(), "{name}: {outcome:?}");
                 let found = model.certify_motion(design, &outcome).expect("a motion");
-                let dense = Task {
-                    samples: 3000,
-                    ..task.clone()
-                };
-                let TaskFigures {
-                    path_reach,
-                    peak_speed,
-                    peak_force,
-                    ..
-                } = follow(model, design, &dense, &frame)
-                    .figures()
-                    .expect("figures")
-                    .clone();
+                let dense = follow(model, design, &sampled(&task, 3000), &frame);
+                let figures = dense.figures().expect("figures");
+                let path_reach = figures.path_reach;
                 let bounds = *found.verdict.bounds().unwrap_or_else(|| panic!("{name}: {found:?}"));
                 proved += 1;
                 for (bound, peak) in [
-                    (bounds.speed, largest_of_legs(peak_speed)),
-                    (bounds.force, largest_of_legs(peak_force)),
+                    (bounds.speed, largest_of_legs(figures.peak_speed)),
+                    (bounds.force, largest_of_legs(figures.peak_force)),
                 ] {
                     assert!(bound >= peak * (1.0 - 1e-12), "{name}: {bound} is passed by {peak}");
                     assert!(bound <= peak * 1.004, "{name}: {bound} is far above {peak}");
@@ -151,22 +136,15 @@ fn what_happens_between_the_samples_is_found() {
             closed: false,
             ..sideways(pose, reach, MotionLaw::Quintic, 3)
         };
-        let dense = Task {
-            samples: 3000,
-            ..rough.clone()
-        };
         let quantity = match design.architecture().actuator() {
             JointKind::Prismatic => Quantity::PathSpeed,
             JointKind::Revolute => Quantity::PathRate,
         };
-        let fine = follow(model, design, &dense, &frame);
+        let fine = follow(model, design, &sampled(&rough, 3000), &frame);
         let peak = largest_of_legs(fine.figures().expect("figures").peak_speed);
         for (limit, is_kept) in [(0.999 * peak, false), (1.001 * peak, true)] {
             let mut settings = model.settings().clone();
-            settings.limits = vec![QuantityLimit {
-                quantity,
-                bound: Bound::AtMost(limit),
-            }];
+            settings.limits = vec![at_most(quantity, limit)];
             let limited = Model::new(settings).expect("a model");
             let outcome = follow(&limited, design, &rough, &frame);
             let found = limited.certify_motion(design, &outcome).expect("a motion");
@@ -207,10 +185,7 @@ fn no_motion_is_proved_that_a_dense_sampling_refutes() {
             if outcome.figures().is_none() {
                 continue;
             }
-            let dense = Task {
-                samples: 1000,
-                ..straight
-            };
+            let dense = sampled(&straight, 1000);
             let is_followed = follow(model, design, &dense, &frame).figures().is_some();
             let found = model.certify_motion(design, &outcome).expect("a motion");
             match found.verdict {

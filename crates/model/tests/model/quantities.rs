@@ -8,7 +8,7 @@ use kinefront_model::spatial::{Pose, unit};
 use kinefront_model::workspace::Region;
 use nalgebra::Matrix2;
 
-use super::strategies;
+use super::strategies::{self, parsed};
 
 const DESIGNS: [&str; 4] = [
     "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056",
@@ -46,18 +46,20 @@ fn poses(evaluation: &Evaluation) -> Vec<Pose> {
 fn check(quantity: Quantity, tolerance: f64, direct: impl Fn(&Model, &Evaluation) -> f64) {
     let model = model();
     for text in DESIGNS {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let evaluation = model.evaluate(&design, GridChoice::Reference);
-        let (found, wanted) = (
-            evaluation.quantities.get(quantity).expect("a value"),
-            direct(&model, &evaluation),
-        );
+        let (found, wanted) = (value_of(quantity, &evaluation), direct(&model, &evaluation));
         assert!(
             (found - wanted).abs() <= tolerance * wanted.abs().max(1e-9),
             "{text}: {} is {found} instead of {wanted}",
             quantity.entry().key
         );
     }
+}
+
+/// The value of a quantity that was asked for.
+fn value_of(quantity: Quantity, evaluation: &Evaluation) -> f64 {
+    evaluation.quantities.get(quantity).expect("a value")
 }
 
 fn least(model: &Model, evaluation: &Evaluation, value: impl Fn(&Model, &Design, &Pose) -> f64) -> f64 {
@@ -69,20 +71,13 @@ fn least(model: &Model, evaluation: &Evaluation, value: impl Fn(&Model, &Design,
 
 #[test]
 fn masses_and_height_follow_from_the_bars() {
-    let mass = |design: &Design, radius: f64, length: f64, count: f64| {
-        let _ = design;
-        count * 7850.0 * std::f64::consts::PI * radius * radius * length
-    };
+    let mass = |radius: f64, length: f64, count: f64| count * 7850.0 * std::f64::consts::PI * radius * radius * length;
     let legs = |design: &Design| {
-        let count = 3.0
-            * if design.architecture() == Architecture::ALL[2] {
-                2.0
-            } else {
-                1.0
-            };
-        mass(design, design.leg_bar_radius(), design.link_length(), count)
+        let has_cranks = design.architecture() == Architecture::ALL[2];
+        let count = 3.0 * if has_cranks { 2.0 } else { 1.0 };
+        mass(design.leg_bar_radius(), design.link_length(), count)
     };
-    let platform = |design: &Design| mass(design, design.platform_bar_radius(), design.platform_radius(), 3.0);
+    let platform = |design: &Design| mass(design.platform_bar_radius(), design.platform_radius(), 3.0);
     check(Quantity::LegsMass, 1e-12, |_, found| legs(&found.design));
     check(Quantity::PlatformMass, 1e-12, |_, found| platform(&found.design));
     check(Quantity::Mass, 1e-12, |_, found| {
@@ -91,62 +86,35 @@ fn masses_and_height_follow_from_the_bars() {
     check(Quantity::Height, 1e-12, |model, found| {
         let home = found.home.expect("a home");
         let members = model.members(&found.design, &home).expect("reachable");
-        let top = members
-            .iter()
-            .map(|member| member.from.z + member.radius)
-            .fold(f64::MIN, f64::max);
-        let bottom = members
-            .iter()
-            .map(|member| member.from.z - member.radius)
-            .fold(f64::MAX, f64::min);
-        top - bottom
+        let tops = members.iter().map(|member| member.from.z + member.radius);
+        let bottoms = members.iter().map(|member| member.from.z - member.radius);
+        tops.fold(f64::MIN, f64::max) - bottoms.fold(f64::MAX, f64::min)
     });
 }
 
 #[test]
 fn least_values_are_those_of_single_poses() {
-    let at = |value: fn(&kinefront_model::evaluation::PoseEvaluation) -> f64| {
-        move |model: &Model, evaluation: &Evaluation| {
-            least(model, evaluation, |model, design, pose| {
-                value(&model.pose(design, pose).expect("reachable"))
-            })
-        }
-    };
-    check(
-        Quantity::Worst(PoseScalar::Dexterity),
-        1e-9,
-        at(|found| found.values[PoseScalar::Dexterity]),
-    );
-    check(
-        Quantity::Worst(PoseScalar::StiffnessXy),
-        1e-9,
-        at(|found| found.values[PoseScalar::StiffnessXy]),
-    );
-    check(
-        Quantity::Worst(PoseScalar::StiffnessZ),
-        1e-9,
-        at(|found| found.values[PoseScalar::StiffnessZ]),
-    );
-    check(
-        Quantity::Worst(PoseScalar::StiffnessPhiZ),
-        1e-9,
-        at(|found| found.values[PoseScalar::StiffnessPhiZ]),
-    );
-    check(
-        Quantity::Worst(PoseScalar::Clearance),
-        1e-9,
-        at(|found| found.nearest.distance),
-    );
-    check(
-        Quantity::Worst(PoseScalar::Reach),
-        1e-6,
-        at(|found| found.values[PoseScalar::Reach]),
-    );
-    check(
-        Quantity::Worst(PoseScalar::Determinant),
-        1e-9,
-        at(|found| found.values[PoseScalar::Determinant].abs()),
-    );
+    for (scalar, tolerance) in [
+        (PoseScalar::Dexterity, 1e-9),
+        (PoseScalar::StiffnessXy, 1e-9),
+        (PoseScalar::StiffnessZ, 1e-9),
+        (PoseScalar::StiffnessPhiZ, 1e-9),
+        (PoseScalar::Clearance, 1e-9),
+        (PoseScalar::Reach, 1e-6),
+        (PoseScalar::Determinant, 1e-9),
+    ] {
+        let at_pose = |model: &Model, design: &Design, pose: &Pose| {
+            let found = model.pose(design, pose).expect("reachable");
+            match scalar {
+                PoseScalar::Clearance => found.nearest.distance,
+                PoseScalar::Determinant => found.values[scalar].abs(),
+                _ => found.values[scalar],
+            }
+        };
+        check(Quantity::Worst(scalar), tolerance, |model, evaluation| {
+            least(model, evaluation, at_pose)
+        });
+    }
     check(Quantity::WorkspaceRadius, 0.0, |_, found| found.workspace_radius());
 }
 
@@ -246,7 +214,7 @@ fn the_mean_dexterity_is_the_integral_over_the_region() {
 #[test]
 fn asking_for_quantities_changes_no_other_value() {
     for text in DESIGNS {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let asked = model().evaluate(&design, GridChoice::Reference);
         let plain = Model::default().evaluate(&design, GridChoice::Reference);
         for quantity in Quantity::all() {
@@ -268,34 +236,23 @@ fn asking_for_quantities_changes_no_other_value() {
 /// A limit of a pose bounds the largest disc: beyond it the value is missed, within it the value is kept.
 #[test]
 fn limits_of_poses_bound_the_workspace() {
-    let design: Design = DESIGNS[0].parse().expect("a design");
+    let design = parsed(DESIGNS[0]);
     let free = model().evaluate(&design, GridChoice::Reference);
-    let bounded = |change: fn(&mut kinefront_model::evaluation::ModelSettings)| {
+    let bounded = |scalar: PoseScalar, limit: f64| {
         strategies::model(|settings| {
             settings.quantities = QuantitySet::all();
-            change(settings);
+            settings.thresholds.set(scalar, Some(limit));
         })
         .evaluate(&design, GridChoice::Reference)
     };
-    let stiff = bounded(|settings| settings.thresholds.set(PoseScalar::Displacement, Some(6e-5)));
-    assert!(
-        stiff
-            .quantities
-            .get(Quantity::Worst(PoseScalar::Displacement))
-            .expect("a value")
-            <= 6e-5
-    );
-    assert!(stiff.workspace_radius() > 0.0 && stiff.workspace_radius() < free.workspace_radius());
-    let driven = bounded(|settings| settings.thresholds.set(PoseScalar::Transmission, Some(0.5)));
-    assert!(
-        driven
-            .quantities
-            .get(Quantity::Worst(PoseScalar::Transmission))
-            .expect("a value")
-            >= 0.5
-    );
-    assert!(driven.workspace_radius() > 0.0 && driven.workspace_radius() < free.workspace_radius());
-    let inside = bounded(|settings| settings.thresholds.set(PoseScalar::Reach, Some(0.3)));
+    let stiff = bounded(PoseScalar::Displacement, 6e-5);
+    assert!(value_of(Quantity::Worst(PoseScalar::Displacement), &stiff) <= 6e-5);
+    let driven = bounded(PoseScalar::Transmission, 0.5);
+    assert!(value_of(Quantity::Worst(PoseScalar::Transmission), &driven) >= 0.5);
+    for bounded in [&stiff, &driven] {
+        assert!(bounded.workspace_radius() > 0.0 && bounded.workspace_radius() < free.workspace_radius());
+    }
+    let inside = bounded(PoseScalar::Reach, 0.3);
     assert!(inside.constraint(Constraint::Reach).value.expect("a value") >= 0.3);
     // The proof counts the limits: one that left them out would prove too much.
     for (scalar, limit, evaluation) in [
@@ -334,7 +291,7 @@ fn limits_of_poses_bound_the_workspace() {
 
 #[test]
 fn limits_of_designs_make_them_infeasible_by_their_relative_shortfall() {
-    let design: Design = DESIGNS[0].parse().expect("a design");
+    let design = parsed(DESIGNS[0]);
     let with = |quantity, bound| {
         strategies::model(|settings| {
             settings.quantities = QuantitySet::all();
@@ -347,10 +304,7 @@ fn limits_of_designs_make_them_infeasible_by_their_relative_shortfall() {
     let heavy = with(Quantity::Mass, Bound::AtMost(0.8 * mass));
     assert!((heavy.violation - 0.25).abs() < 1e-12 && heavy.workspace_radius() > 0.0);
     let wide = with(Quantity::Worst(PoseScalar::Footprint), Bound::AtMost(1.0));
-    let footprint = wide
-        .quantities
-        .get(Quantity::Worst(PoseScalar::Footprint))
-        .expect("a value");
+    let footprint = value_of(Quantity::Worst(PoseScalar::Footprint), &wide);
     assert!((wide.violation - (footprint - 1.0)).abs() < 1e-12);
     assert!(with(Quantity::DexterityMean, Bound::AtLeast(0.1)).is_feasible());
 }

@@ -1,41 +1,55 @@
 //! Compares results with values from independent programs (tests/fixtures/README.md) and with the designs of the paper.
 
-use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
-use kinefront_model::mechanism::{Design, WorkingMode};
+use kinefront_model::evaluation::{GridChoice, Model, PoseScalar, PoseValues};
+use kinefront_model::mechanism::{Architecture, Design, FURTHER_VARIABLES, WorkingMode};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::StiffnessDefinition;
 use nalgebra::Matrix6;
 use serde_json::Value;
 
 use super::search::plain_search;
+use super::strategies::{self, parsed};
 
-pub fn fixture(name: &str) -> Value {
+/// The cases of a kind in a fixture.
+pub fn cases_of(name: &str, kind: &str) -> Vec<Value> {
     let path = format!("{}/tests/fixtures/{name}", env!("CARGO_MANIFEST_DIR"));
-    serde_json::from_str(&std::fs::read_to_string(path).expect("the fixture")).expect("JSON")
+    let fixture: Value = serde_json::from_str(&std::fs::read_to_string(path).expect("the fixture")).expect("JSON");
+    fixture[kind].as_array().expect("cases").clone()
 }
 
 pub fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
+pub fn numbers<const N: usize>(value: &Value) -> [f64; N] {
+    std::array::from_fn(|k| number(&value[k]))
+}
+
+/// The design of a case, which states one sign for its working mode, one for each leg, or none.
 pub fn design(case: &Value) -> Design {
-    let plus = case["working_mode"].as_i64().unwrap_or(1) > 0;
+    let plus = match &case["working_mode"] {
+        signs @ Value::Array(_) => numbers(signs).map(|sign: f64| sign > 0.0),
+        mode => [mode.as_i64().unwrap_or(1) > 0; 3],
+    };
     let values = ["R", "r", "Lb", "rj", "rp"].map(|key| number(&case["design"][key]));
-    let architecture = case["architecture"]
-        .as_str()
-        .expect("a name")
-        .parse()
-        .expect("an architecture");
-    Design::new(architecture, WorkingMode::new([plus; 3]), values).expect("a valid design")
+    let name = case["architecture"].as_str().expect("a name");
+    let architecture: Architecture = name.parse().expect("an architecture");
+    let design = Design::new(architecture, WorkingMode::new(plus), values).expect("a valid design");
+    FURTHER_VARIABLES.into_iter().fold(design, |design, variable| {
+        match case["design"][variable.key()].as_f64() {
+            Some(value) if architecture.has(variable) => design.with(variable, value).expect("a valid value"),
+            _ => design,
+        }
+    })
 }
 
 pub fn pose(case: &Value) -> Pose {
-    let pose = &case["pose"];
-    Pose::new(
-        number(&pose["x"]),
-        number(&pose["y"]),
-        number(&pose["phi_deg"]).to_radians(),
-    )
+    pose_at(&case["pose"])
+}
+
+pub fn pose_at(value: &Value) -> Pose {
+    let [x, y, phi_deg] = ["x", "y", "phi_deg"].map(|key| number(&value[key]));
+    Pose::new(x, y, phi_deg.to_radians())
 }
 
 pub fn matrix(value: &Value) -> Matrix6<f64> {
@@ -62,14 +76,30 @@ pub fn close(value: f64, wanted: f64, tolerance: f64, what: &str) {
     );
 }
 
+/// Asserts that the values of the stiffness agree with those of a case, in both definitions.
+pub fn stiffness_values_agree(held: &PoseValues, free: &PoseValues, case: &Value, tolerance: f64, design: &Design) {
+    for (value, key) in [
+        (held[PoseScalar::StiffnessXy], "k_xy"),
+        (held[PoseScalar::StiffnessZ], "k_z"),
+        (held[PoseScalar::StiffnessPhiZ], "k_phi_z"),
+        (free[PoseScalar::StiffnessXy], "k_xy_compliance"),
+        (free[PoseScalar::StiffnessZ], "k_z_compliance"),
+        (free[PoseScalar::StiffnessPhiZ], "k_phi_z_compliance"),
+    ] {
+        let wanted = number(&case[key]);
+        assert!(
+            (value / wanted - 1.0).abs() < tolerance,
+            "{design}: {key} {value} instead of {wanted}"
+        );
+    }
+}
+
 #[test]
 fn poses_agree_with_the_finite_element_solver() {
-    let cases = fixture("cases.json");
-    let cases = cases["poses"].as_array().expect("poses");
+    let cases = cases_of("cases.json", "poses");
     assert_eq!(cases.len(), 12);
-    let compliance =
-        super::strategies::model(|settings| settings.stiffness_definition = StiffnessDefinition::Compliance);
-    for case in cases {
+    let compliance = strategies::model(|settings| settings.stiffness_definition = StiffnessDefinition::Compliance);
+    for case in &cases {
         let (design, pose) = (design(case), pose(case));
         let report = Model::default().pose(&design, &pose).expect("reachable");
         for leg in 0..3 {
@@ -79,42 +109,24 @@ fn poses_agree_with_the_finite_element_solver() {
                 close(report.c[leg][axis], number(&case["C"][leg][axis]), 1e-9, "C");
             }
         }
-        close(
-            report.values[PoseScalar::Dexterity],
-            number(&case["inverse_condition"]),
-            1e-9,
-            "inverse condition",
-        );
+        let condition = report.values[PoseScalar::Dexterity];
+        close(condition, number(&case["inverse_condition"]), 1e-9, "inverse condition");
         let off = difference(&report.stiffness, &matrix(&case["stiffness_matrix"]));
         assert!(off < 1e-7, "{design} at {pose:?}: stiffness off by {off:e}");
         let soft = compliance.pose(&design, &pose).expect("reachable").values;
-        for (value, key) in [
-            (report.values[PoseScalar::StiffnessXy], "k_xy"),
-            (report.values[PoseScalar::StiffnessZ], "k_z"),
-            (report.values[PoseScalar::StiffnessPhiZ], "k_phi_z"),
-            (soft[PoseScalar::StiffnessXy], "k_xy_compliance"),
-            (soft[PoseScalar::StiffnessZ], "k_z_compliance"),
-            (soft[PoseScalar::StiffnessPhiZ], "k_phi_z_compliance"),
-        ] {
-            let wanted = number(&case[key]);
-            assert!(
-                (value / wanted - 1.0).abs() < 1e-6,
-                "{design}: {key} {value} instead of {wanted}"
-            );
-        }
+        stiffness_values_agree(&report.values, &soft, case, 1e-6, &design);
     }
 }
 
 #[test]
 fn designs_agree_on_both_grids_and_both_definitions() {
-    let cases = fixture("cases.json");
-    let cases = cases["designs"].as_array().expect("designs");
+    let cases = cases_of("cases.json", "designs");
     assert_eq!(cases.len(), 13);
     let model = Model::default();
-    let compliance = super::strategies::model(|settings| {
+    let compliance = strategies::model(|settings| {
         settings.stiffness_definition = StiffnessDefinition::Compliance;
     });
-    for case in cases {
+    for case in &cases {
         let design = design(case);
         let tolerance = 1e-5 * design.base_radius();
         let evaluate = |model: &Model, grid| model.evaluate(&design, grid);
@@ -159,10 +171,9 @@ fn designs_agree_on_both_grids_and_both_definitions() {
 /// A certificate encloses the radius of the reference up to the error of its grid, unless it finds a pose that the grid missed.
 #[test]
 fn certificates_agree_with_the_fine_grid_of_the_reference() {
-    let cases = fixture("cases.json");
     let model = Model::default();
     let mut agreeing = 0;
-    for case in cases["designs"].as_array().expect("designs") {
+    for case in &cases_of("cases.json", "designs") {
         let (design, wanted) = (design(case), number(&case["workspace_radius_fine_grid"]));
         let Some(claim) = model.claim(&model.evaluate(&design, GridChoice::Fine)) else {
             assert_eq!(wanted, 0.0, "{design}");
@@ -185,9 +196,9 @@ fn certificates_agree_with_the_fine_grid_of_the_reference() {
 
 #[test]
 fn thin_bars_agree_with_sixty_digits() {
-    let cases = fixture("thin_bars.json");
-    assert_eq!(cases["poses"].as_array().map(Vec::len), Some(36));
-    for case in cases["poses"].as_array().expect("poses") {
+    let cases = cases_of("thin_bars.json", "poses");
+    assert_eq!(cases.len(), 36);
+    for case in &cases {
         let (design, pose) = (design(case), pose(case));
         let report = Model::default().pose(&design, &pose).expect("reachable");
         let off = difference(&report.stiffness, &matrix(&case["stiffness_matrix"]));
@@ -226,7 +237,7 @@ fn the_table_of_the_paper() {
     ];
     println!("design  mass paper/model [kg]   R_w paper / reference / fine grid [m]");
     for row in rows {
-        let design: Design = row.design.parse().expect("a design");
+        let design = parsed(row.design);
         let model = Model::default();
         let reference = model.evaluate(&design, GridChoice::Reference);
         let fine = model.evaluate(&design, GridChoice::Fine);

@@ -11,7 +11,7 @@ use kinefront_testkit::poses_of_region;
 use rayon::prelude::*;
 
 use super::regions::RANGES;
-use super::strategies;
+use super::strategies::{self, PAPER_LIMITS, parsed};
 
 fn with_region(region: Region) -> Model {
     strategies::model(|settings| settings.workspace.region = region)
@@ -50,10 +50,13 @@ fn regions() -> Vec<(&'static str, Region)> {
 fn sized(model: &Model, architecture: Architecture, increase: f64) -> Option<Design> {
     let start = Design::new(architecture, WorkingMode::new([true; 3]), [1.5, 0.4, 1.2, 0.03, 0.03]).expect("a design");
     let found = model.sized(&start, &RANGES, WorkspaceTarget::Prescribed(GridChoice::Reference))?;
-    let factor = 1.0 + increase;
-    let mut values = found.values();
+    with_thicker_bars(&found, 1.0 + increase)
+}
+
+fn with_thicker_bars(design: &Design, factor: f64) -> Option<Design> {
+    let mut values = design.values();
     values[3..].iter_mut().for_each(|radius| *radius *= factor);
-    found.with_dimensions(values).ok()
+    design.with_dimensions(values).ok()
 }
 
 fn proof(model: &Model, design: &Design, phi_deg: f64) -> Certificate {
@@ -75,15 +78,8 @@ fn least_margin(model: &Model, design: &Design, pose: &Pose) -> f64 {
     if model.pose(design, pose).is_err() {
         return -1.0;
     }
-    [
-        PoseScalar::Dexterity,
-        PoseScalar::StiffnessXy,
-        PoseScalar::StiffnessZ,
-        PoseScalar::StiffnessPhiZ,
-    ]
-    .into_iter()
-    .map(|scalar| model.margin_at(design, pose, scalar))
-    .fold(f64::INFINITY, f64::min)
+    let margins = PAPER_LIMITS.map(|scalar| model.margin_at(design, pose, scalar));
+    margins.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// Designs whose bars carry with a little to spare are proved over each kind of region, and no random pose is infeasible; with bars
@@ -119,11 +115,7 @@ fn regions_are_proved_and_refuted() {
                 assert_eq!(found.lower, inscribed);
             }
             // The home orientation of the design may leave room for bars that are a little thinner.
-            let thin_by = |factor: f64| {
-                let mut values = design.values();
-                values[3..].iter_mut().for_each(|radius| *radius *= factor);
-                design.with_dimensions(values).expect("a design")
-            };
+            let thin_by = |factor: f64| with_thicker_bars(&design, factor).expect("a design");
             let thin = [0.99, 0.9, 0.5].map(thin_by).into_iter().find(|thin| {
                 let poses = random_poses(&model, phi_deg, 500);
                 poses.iter().any(|pose| least_margin(&model, thin, pose) < 0.0)
@@ -153,7 +145,7 @@ fn regions_are_proved_and_refuted() {
 /// corner it is: a proof that left a part of the region out, or a constraint, would.
 #[test]
 fn a_blind_proof_does_not_pass_an_infeasible_corner() {
-    let design: Design = "3-RRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06".parse().expect("a design");
+    let design = parsed("3-RRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06");
     for (name, corners) in [
         (
             "rectangle",
@@ -194,23 +186,20 @@ fn a_blind_proof_does_not_pass_an_infeasible_corner() {
 #[test]
 fn each_limit_ends_the_proof_of_a_region() {
     let region = || Region::Polygon(Polygon::rectangle(0.4, 0.3).expect("a rectangle"));
-    let design: Design = "3-PRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06".parse().expect("a design");
+    let design = parsed("3-PRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06");
     let phi_deg = with_region(region())
         .evaluate(&design, GridChoice::Fine)
         .home_phi_deg
         .expect("a home");
-    for scalar in [
-        PoseScalar::Dexterity,
-        PoseScalar::StiffnessXy,
-        PoseScalar::StiffnessZ,
-        PoseScalar::StiffnessPhiZ,
+    let others = [
         PoseScalar::Transmission,
         PoseScalar::Displacement,
         PoseScalar::Clearance,
         PoseScalar::Stress,
         PoseScalar::BucklingFactor,
         PoseScalar::NaturalFrequency,
-    ] {
+    ];
+    for scalar in PAPER_LIMITS.into_iter().chain(others) {
         let limited = |limit: f64| {
             strategies::model(|settings| {
                 settings.workspace.region = region();
@@ -257,7 +246,7 @@ fn boxes_lie_in_the_parts_of_the_region() {
             self.0.push(part.patch);
         }
     }
-    let design: Design = "3-PRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06".parse().expect("a design");
+    let design = parsed("3-PRR R=1.5 r=0.4 Lb=1.2 rj=0.05 rp=0.06");
     for (name, region) in regions() {
         let model = with_region(region);
         let claim = model.claim(&model.evaluate(&design, GridChoice::Fine)).expect("a home");

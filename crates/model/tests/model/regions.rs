@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use kinefront_model::evaluation::{
-    Better, Constraint, GridChoice, Model, Objective, PoseScalar, Quantity, SizingRanges, WorkspaceTarget,
+    Better, Constraint, Evaluation, GridChoice, Model, Objective, PoseScalar, Quantity, SizingRanges, WorkspaceTarget,
 };
 use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
 use kinefront_model::polygon::{Polygon, PolygonError};
@@ -11,7 +11,7 @@ use kinefront_model::workspace::Region;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::strategies::{self, applicable_cases};
+use super::strategies::{self, applicable_cases, bar_ranges, parsed};
 
 fn prescribed(region: Region) -> Model {
     strategies::model(|settings| settings.workspace.region = region)
@@ -164,22 +164,19 @@ fn reports_over_a_rectangle_are_the_least_of_its_poses() {
         "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03",
         "3-RRR R=1.2 r=0.4 Lb=1.1 rj=0.05 rp=0.05",
     ] {
-        examine(&model, &text.parse().expect("a design"), &corners);
+        examine(&model, &parsed(text), &corners);
     }
 }
 
 #[test]
 fn the_home_is_the_orientation_with_the_best_worst_margin() {
-    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03".parse().expect("a design");
+    let design = parsed("3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03");
     let free = prescribed(rectangle(0.5, 0.3));
     let found = free.evaluate(&design, GridChoice::Reference);
-    let worst = |evaluation: &kinefront_model::evaluation::Evaluation| {
-        evaluation
-            .constraints
-            .iter()
-            .filter(|report| report.required && report.constraint != Constraint::Assembly)
-            .map(|report| report.margin)
-            .fold(f64::INFINITY, f64::min)
+    let worst = |evaluation: &Evaluation| {
+        let reports = evaluation.constraints.iter().filter(|report| report.required);
+        let of_poses = reports.filter(|report| report.constraint != Constraint::Assembly);
+        of_poses.map(|report| report.margin).fold(f64::INFINITY, f64::min)
     };
     let best = worst(&found);
     for k in 0..144 {
@@ -201,13 +198,13 @@ fn a_polygon_may_lie_beside_the_centre() {
     let polygon = Polygon::new(corners.to_vec()).expect("a triangle");
     assert_eq!(polygon.inscribed_radius(), 0.0);
     let model = prescribed(Region::Polygon(polygon));
-    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03".parse().expect("a design");
+    let design = parsed("3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03");
     examine(&model, &design, &corners);
 }
 
 #[test]
 fn a_region_out_of_reach_is_infeasible_by_more_than_one_that_is_too_soft() {
-    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.006 rp=0.006".parse().expect("a design");
+    let design = parsed("3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.006 rp=0.006");
     let violation = |region: Region| prescribed(region).evaluate(&design, GridChoice::Reference).violation;
     let (near, far) = (violation(Region::Disc(0.2)), violation(Region::Disc(5.0)));
     assert!(near > 0.0 && near < 1.0 && far > 1.0, "{near}, {far}");
@@ -230,13 +227,7 @@ fn corners_that_are_no_polygon_are_refused() {
     assert!(concave.contains(DVec2::new(1.0, 0.4)) && !concave.contains(DVec2::new(1.0, 0.6)));
 }
 
-pub const RANGES: SizingRanges = SizingRanges {
-    leg: [0.0, 0.1],
-    platform: [0.0, 0.1],
-    listed: [None, None],
-    is_exact: true,
-    scale: [1.0; 2],
-};
+pub const RANGES: SizingRanges = bar_ranges(true);
 
 #[test]
 fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
@@ -246,7 +237,7 @@ fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
         "3-RRR R=1.2 r=0.4 Lb=1.1 rj=0.05 rp=0.05",
         "3-RPR R=1.4 r=0.3 Lb=1.9 rj=0.03 rp=0.03",
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let target = WorkspaceTarget::Prescribed(GridChoice::Reference);
         let sized = model.sized(&design, &RANGES, target).expect("bars");
         let found = model.evaluate(&sized, GridChoice::Reference);
@@ -254,7 +245,7 @@ fn bars_for_a_region_hold_on_its_grid_and_not_with_less() {
         let thinner = |leg: f64, platform: f64| {
             let [base, radius, link, rj, rp] = sized.values();
             let values = [base, radius, link, rj * leg, rp * platform];
-            Design::new(sized.architecture(), sized.working_mode(), values).expect("a design")
+            sized.with_dimensions(values).expect("a design")
         };
         let less = thinner(1.0 - 1e-7, 1.0 - 1e-7);
         assert!(!model.evaluate(&less, GridChoice::Reference).is_feasible(), "{sized}");
@@ -280,25 +271,20 @@ fn the_lightest_pair_of_two_lists_is_the_one_found_by_trying_all() {
         leg: [radii[0], radii[7]],
         platform: [radii[0], radii[7]],
         listed: [Some(radii.clone()), Some(radii.clone())],
-        is_exact: true,
-        scale: [1.0; 2],
+        ..RANGES
     };
     for text in [
         "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03",
         "3-RRR R=1.2 r=0.4 Lb=1.1 rj=0.05 rp=0.05",
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let target = WorkspaceTarget::Prescribed(GridChoice::Reference);
         let sized = model.sized(&design, &ranges, target).expect("bars");
         let [base, platform, link, ..] = design.values();
         let mut lightest = f64::INFINITY;
         for &leg in &radii {
             for &bar in &radii {
-                let pair = Design::new(
-                    design.architecture(),
-                    design.working_mode(),
-                    [base, platform, link, leg, bar],
-                );
+                let pair = design.with_dimensions([base, platform, link, leg, bar]);
                 let found = model.evaluate(&pair.expect("a design"), GridChoice::Reference);
                 if found.is_feasible() {
                     lightest = lightest.min(found.mass());
@@ -335,7 +321,7 @@ fn directions_of_the_unit_circle_are_used_for_discs() {
         settings.workspace.region = Region::Disc(0.15);
         settings.workspace.centre = centre;
     });
-    let design: Design = "3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03".parse().expect("a design");
+    let design = parsed("3-PRR R=1.2 r=0.3 Lb=0.9 rj=0.03 rp=0.03");
     let rim: Vec<DVec2> = (0..36)
         .map(|k| centre + unit(f64::from(k) * 10f64.to_radians()) * 0.15)
         .collect();
@@ -353,7 +339,7 @@ fn the_scale_of_a_sized_geometry_is_the_lightest() {
         "3-RRR R=0.9 r=0.2 Lb=1.0 rj=0.03 rp=0.03",
         "3-RPR R=1.0 r=0.1 Lb=1.4 rj=0.03 rp=0.03",
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let open = SizingRanges {
             scale: [0.05, 5.0],
             ..RANGES
@@ -374,7 +360,7 @@ fn the_scale_of_a_sized_geometry_is_the_lightest() {
         for step in -40..=60 {
             let factor = factor * (1.0 + 2e-3 * f64::from(step));
             let values = [base * factor, platform * factor, link * factor, 0.02, 0.02];
-            let similar = Design::new(design.architecture(), design.working_mode(), values).expect("a design");
+            let similar = design.with_dimensions(values).expect("a design");
             let Some(other) = model.sized(&similar, &RANGES, target) else {
                 continue;
             };

@@ -13,7 +13,7 @@ use kinefront_testkit::repetitions;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::strategies::{bodies, clearance, design, limit_motion, model};
+use super::strategies::{bodies, clearance, design, limit_motion, model, parsed};
 
 /// Form of the stiffness that decides which poses are feasible.
 #[derive(Clone, Copy)]
@@ -59,24 +59,14 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
     let assembled = assembly.value >= assembly.threshold;
     for instructions in InstructionSet::available() {
         let found = model.evaluate_with(design, GridChoice::Reference, instructions);
+        let name = format!("{design}: {}", instructions.name());
         if !assembled {
             prop_assert_eq!(found.workspace_radius(), 0.0);
             continue;
         }
-        prop_assert_eq!(
-            found.workspace_radius(),
-            wanted.radius,
-            "{}: {}",
-            design,
-            instructions.name()
-        );
-        prop_assert_eq!(
-            found.home_phi_deg,
-            first.map(|home| home as f64 * grid.phi_step_deg()),
-            "{}: {}",
-            design,
-            instructions.name()
-        );
+        prop_assert_eq!(found.workspace_radius(), wanted.radius, "{}", name);
+        let home = first.map(|home| home as f64 * grid.phi_step_deg());
+        prop_assert_eq!(found.home_phi_deg, home, "{}", name);
         // Of the limits of a study, none has an id among the constraints.
         let is_limited = found.active().next().is_some() || !found.limits.is_empty();
         prop_assert!(is_limited, "{}: no constraint is active", design);
@@ -88,21 +78,16 @@ fn exactly(model: &Model, design: &Design) -> Result<(), TestCaseError> {
 fn same(model: &Model, design: &Design) -> Result<(), String> {
     let found = model.evaluate(design, GridChoice::Reference);
     let wanted = plain_search(model, design);
-    let close = |radius: f64| (found.workspace_radius() - radius).abs() <= 1e-9 * wanted.radius;
+    let radius = found.workspace_radius();
+    let close = |wanted_radius: f64| (radius - wanted_radius).abs() <= 1e-9 * wanted.radius;
     if !close(wanted.radius) {
-        return Err(format!(
-            "{design}: {} instead of {}",
-            found.workspace_radius(),
-            wanted.radius
-        ));
+        return Err(format!("{design}: {radius} instead of {}", wanted.radius));
     }
     if let Some(phi_deg) = found.home_phi_deg {
         let home = (phi_deg / model.settings().reference_grid.phi_step_deg()).round() as usize;
-        if !close(wanted.windows[home]) {
-            return Err(format!(
-                "{design}: at {phi_deg}° the radius is {}",
-                wanted.windows[home]
-            ));
+        let radius = wanted.windows[home];
+        if !close(radius) {
+            return Err(format!("{design}: at {phi_deg}° the radius is {radius}"));
         }
     }
     Ok(())
@@ -248,9 +233,7 @@ proptest! {
 /// A given home orientation yields the radius of the window about it, which never exceeds that of the best window.
 #[test]
 fn a_given_home_is_kept() {
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     let best = Model::default().evaluate(&design, GridChoice::Reference);
     for (home, equal) in [(30.0, true), (-330.0, true), (20.0, false)] {
         let model = model(|settings| settings.workspace.home_phi_deg = Some(home));
@@ -279,7 +262,7 @@ fn lifting_the_active_constraint_enlarges_the_workspace() {
         ),
     ];
     for (text, constraint) in cases {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let before = Model::default().evaluate(&design, GridChoice::Fine);
         assert!(before.active().any(|active| active == constraint), "{text}");
         let eased = model(|settings| {
@@ -299,7 +282,7 @@ fn a_zero_radius_is_infeasible_and_finite() {
         "3-PRR R=3 r=1.2 Lb=1.9 rj=0 rp=0.05",
         "3-RRR R=3 r=1.2 Lb=1.9 rj=0.05 rp=0",
     ] {
-        let found = Model::default().evaluate(&text.parse().expect("a design"), GridChoice::Reference);
+        let found = Model::default().evaluate(&parsed(text), GridChoice::Reference);
         assert!(!found.is_feasible());
         assert!(found.mass() > 0.0 && found.violation > 0.0);
         assert_eq!(found.constraint(Constraint::StiffnessXy).value, Some(0.0));
@@ -320,7 +303,7 @@ fn sizes_beyond_measure_stay_finite() {
             (Model::default(), "R=1 r=1 Lb=1 rj=0.05 rp=0.05"),
             (far.clone(), "R=2 r=1 Lb=2 rj=0.05 rp=0.05"),
         ] {
-            let design: Design = format!("{architecture} {lengths}").parse().expect("a design");
+            let design = parsed(&format!("{architecture} {lengths}"));
             let found = model.evaluate(&design, GridChoice::Reference);
             assert!(
                 found.workspace_radius().is_finite() && found.violation.is_finite() && found.mass().is_finite(),
@@ -348,7 +331,7 @@ fn sizes_beyond_measure_stay_finite() {
 /// A workspace that is large compared with the base costs time, not memory.
 #[test]
 fn a_disc_of_many_base_radii_is_searched() {
-    let design: Design = "3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1".parse().expect("a design");
+    let design = parsed("3-RRR R=0.001 r=1 Lb=1 rj=0.1 rp=0.1");
     let found = Model::default().evaluate(&design, GridChoice::Reference);
     assert!(
         found.workspace_radius() > 100.0 * design.base_radius(),

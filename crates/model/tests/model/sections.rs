@@ -11,15 +11,22 @@ use kinefront_model::stiffness::joint_model;
 use proptest::prelude::*;
 use serde_json::Value;
 
-use super::reference::{close, design, difference, fixture, matrix, number, pose};
-use super::strategies::{self, applicable_cases};
+use super::reference::{cases_of, close, design, difference, matrix, number, pose};
+use super::strategies::{self, applicable_cases, parsed};
 
-fn section(value: &Value) -> CrossSection {
-    let wall = Wall::Ratio(number(&value["wall_ratio"]));
-    match value["kind"].as_str() {
-        Some("tube") => CrossSection::Tube(wall),
-        Some("square_tube") => CrossSection::SquareTube(wall),
-        _ => CrossSection::Round,
+/// The cross-sections of a case.
+pub fn sections(case: &Value) -> CrossSections {
+    let section = |value: &Value| {
+        let wall = || Wall::Ratio(number(&value["wall_ratio"]));
+        match value["kind"].as_str() {
+            Some("tube") => CrossSection::Tube(wall()),
+            Some("square_tube") => CrossSection::SquareTube(wall()),
+            _ => CrossSection::Round,
+        }
+    };
+    CrossSections {
+        legs: section(&case["sections"]["legs"]),
+        platform: section(&case["sections"]["platform"]),
     }
 }
 
@@ -37,15 +44,10 @@ fn joint_form(model: &Model, design: &Design, pose: &Pose) -> nalgebra::Matrix6<
 
 #[test]
 fn hollow_bars_agree_with_the_finite_element_solver() {
-    let cases = fixture("sections.json");
-    let cases = cases["cases"].as_array().expect("cases");
+    let cases = cases_of("sections.json", "cases");
     assert_eq!(cases.len(), 12);
     for (index, case) in cases.iter().enumerate() {
-        let sections = CrossSections {
-            legs: section(&case["sections"]["legs"]),
-            platform: section(&case["sections"]["platform"]),
-        };
-        let model = model_with(sections);
+        let model = model_with(sections(case));
         let (design, pose) = (design(case), pose(case));
         close(model.mass(&design), number(&case["mass"]), 1e-12, "mass");
         let found = model.pose(&design, &pose).expect("reachable");
@@ -82,7 +84,7 @@ fn a_wall_as_thick_as_the_radius_is_a_solid_bar_to_the_bit() {
             "3-RRR R=0.7 r=0.31 Lb=0.66 rj=0.03 rp=0.02",
             "3-RRR R=2.0 r=0.6 Lb=1.6 rj=0.0 rp=0.04",
         ] {
-            let design: Design = text.parse().expect("a design");
+            let design = parsed(text);
             let [hollow, solid] = [&model, &round].map(|model| model.evaluate(&design, GridChoice::Reference));
             assert_eq!(hollow, solid, "{text}");
         }
@@ -150,7 +152,7 @@ fn the_certificate_of_square_tubes_agrees_with_the_grid() {
         "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.04 rp=0.06",
         "3-RRR R=1.2 r=0.5 Lb=1.0 rj=0.04 rp=0.05",
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let evaluation = model.evaluate(&design, GridChoice::Fine);
         assert!(evaluation.workspace_radius() > 0.1, "{text}");
         let options = model.claim(&evaluation).expect("a workspace");

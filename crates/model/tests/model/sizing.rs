@@ -6,15 +6,9 @@ use kinefront_model::evaluation::{
 use kinefront_model::mechanism::{Design, DesignVariable, WorkingMode};
 use proptest::prelude::*;
 
-use crate::strategies::{applicable_cases, design};
+use crate::strategies::{self, applicable_cases, bar_ranges, design, parsed};
 
-const RANGES: SizingRanges = SizingRanges {
-    leg: [0.0, 0.1],
-    platform: [0.0, 0.1],
-    listed: [None, None],
-    is_exact: false,
-    scale: [1.0; 2],
-};
+const RANGES: SizingRanges = bar_ranges(false);
 
 fn sized(model: &Model, design: &Design, target: WorkspaceTarget) -> Option<Design> {
     model.sized(design, &RANGES, target)
@@ -42,7 +36,7 @@ fn no_lighter_pair_of_radii_is_found_by_trying_all() {
         ("3-RPR R=1.5636 r=0.1006 Lb=2.2135 rj=0.017 rp=0.021", 0.54),
         ("3-RRR R=0.7 r=0.11 Lb=0.56 rj=0.03 rp=0.02", 0.45),
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let found = sized(&model, &design, WorkspaceTarget::Radius(target)).expect("there are such bars");
         let reached = radius(&model, &found);
         assert!(reached >= 0.995 * target, "{text}: {reached} instead of {target}");
@@ -74,6 +68,19 @@ fn no_lighter_pair_of_radii_is_found_by_trying_all() {
     }
 }
 
+/// Returns a pair of radii near those of a design that is lighter by more than 1 % and holds what is asked for.
+fn lighter_pair(model: &Model, design: &Design, holds: impl Fn(&Design) -> bool) -> Option<Design> {
+    let factors = (-8..=8).map(|k| 1.0 + 0.025 * f64::from(k));
+    let pairs = factors
+        .clone()
+        .flat_map(|leg| factors.clone().map(move |platform| [leg, platform]));
+    let radii = [design.leg_bar_radius(), design.platform_bar_radius()];
+    pairs
+        .map(|[leg, platform]| with_bars(design, [leg * radii[0], platform * radii[1]]))
+        .filter(|other| model.mass(other) < 0.99 * model.mass(design))
+        .find(holds)
+}
+
 /// Bars are as thick as a natural frequency requires, and no lighter pair of a lattice has it over the same workspace.
 #[test]
 fn bars_are_sized_for_a_natural_frequency() {
@@ -85,7 +92,7 @@ fn bars_are_sized_for_a_natural_frequency() {
         ("3-RPR R=1.5636 r=0.1006 Lb=2.2135 rj=0.017 rp=0.021", 0.54),
         ("3-RRR R=0.7 r=0.11 Lb=0.56 rj=0.03 rp=0.02", 0.45),
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let limited_to = |frequency: Option<f64>| {
             let mut settings = ModelSettings {
                 quantities: [Quantity::Worst(FREQUENCY)].into_iter().collect(),
@@ -123,19 +130,7 @@ fn bars_are_sized_for_a_natural_frequency() {
             "{text}: {least} kg and {} kg",
             model.mass(&stiff)
         );
-        let factors = (-8..=8).map(|k| 1.0 + 0.025 * f64::from(k));
-        let pairs = factors
-            .clone()
-            .flat_map(|leg| factors.clone().map(move |platform| [leg, platform]));
-        let lighter = pairs
-            .map(|[leg, platform]| {
-                with_bars(
-                    &found,
-                    [leg * found.leg_bar_radius(), platform * found.platform_bar_radius()],
-                )
-            })
-            .filter(|other| model.mass(other) < 0.99 * least)
-            .find(|other| worst(&model, other).0 >= reached);
+        let lighter = lighter_pair(&model, &found, |other| worst(&model, other).0 >= reached);
         assert!(lighter.is_none(), "{text}: {least} kg, but {lighter:?} is lighter");
     }
     assert!(sized_for_it > 0);
@@ -144,9 +139,7 @@ fn bars_are_sized_for_a_natural_frequency() {
 #[test]
 fn what_cannot_be_had_is_none() {
     let model = Model::default();
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     assert_eq!(
         sized(&model, &design, WorkspaceTarget::Radius(3.0)),
         None,
@@ -155,9 +148,7 @@ fn what_cannot_be_had_is_none() {
     let thin = SizingRanges {
         leg: [0.0, 0.01],
         platform: [0.0, 0.01],
-        listed: [None, None],
-        is_exact: false,
-        scale: [1.0; 2],
+        ..RANGES
     };
     let found = model.sized(&design, &thin, WorkspaceTarget::Radius(1.0));
     assert_eq!(found, None, "the ranges of the bars do not allow the radius");
@@ -169,11 +160,11 @@ fn what_cannot_be_had_is_none() {
     );
     // The weakest pose of this design is at the centre.
     let text = "3-RPR R=1.5770 r=0.6257 Lb=1.22825 rj=0.0219 rp=0.0324";
-    let centre: Design = text.parse().expect("a design");
+    let centre = parsed(text);
     let found = sized(&model, &centre, WorkspaceTarget::Largest).expect("bars");
     assert!(radius(&model, &found) > 0.15);
     // Bars are also sized for an asymmetric working mode, a centre away from O and a given home orientation.
-    let model = super::strategies::model(|settings| {
+    let model = strategies::model(|settings| {
         settings.workspace.centre = glam::DVec2::new(0.1, -0.05);
         settings.workspace.home_phi_deg = Some(30.0);
     });

@@ -7,11 +7,9 @@ use kinefront_model::evaluation::{GridChoice, Model, PoseScalar};
 use kinefront_model::mechanism::{
     AnyLeg, Architecture, CylinderSize, Design, JointKind, JointPoint, JointSizes, Manipulator, MemberKind,
 };
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 
 use crate::clearance::Random;
-use crate::strategies::model;
+use crate::strategies::{model, parsed};
 use kinefront_testkit::oracle::distance_to_cylinder;
 use kinefront_testkit::repetitions;
 
@@ -107,10 +105,40 @@ fn between(a: &Cylinder, b: &Cylinder) -> f64 {
     }
 }
 
+/// The least distance of the joints from members and from each other; negative infinity where an axis is within a joint, whose depth there
+/// is not measured.
+fn clearance_of_joints(joints: &[Cylinder], capsules: &[Capsule], has_proximal: bool) -> f64 {
+    let mut least = f64::INFINITY;
+    for (index, joint) in joints.iter().enumerate() {
+        for capsule in capsules
+            .iter()
+            .filter(|capsule| !is_at_end(joint, capsule, has_proximal))
+        {
+            let ends = [capsule.from, capsule.to].map(|end| end.to_array());
+            let axis = distance_to_cylinder(ends, joint.at.to_array(), joint.radius, joint.heights);
+            let clear = if axis > 0.0 {
+                axis - capsule.radius
+            } else {
+                f64::NEG_INFINITY
+            };
+            least = least.min(clear);
+        }
+        for other in &joints[..index] {
+            let shares = other.leg == joint.leg
+                && (other.point != JointPoint::A || joint.point != JointPoint::C || !has_proximal);
+            let is_rigid = other.point == joint.point && joint.point != JointPoint::B;
+            if !shares && !is_rigid {
+                least = least.min(between(joint, other));
+            }
+        }
+    }
+    least
+}
+
 /// The clearance at random poses is the least distance of capsules and upright cylinders that a library finds.
 #[test]
 fn joints_keep_their_distance() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(5));
+    let mut random = Random::new(5);
     for &architecture in Architecture::ALL {
         let (mut compared, mut decisive) = (0, 0);
         for _ in 0..repetitions(4000, 100_000) {
@@ -139,31 +167,9 @@ fn joints_keep_their_distance() {
                 [a, report.b[leg], report.c[leg]]
             });
             let joints = cylinders(&model, &design, points, &capsules);
-            let mut least = without.pose(&design, &pose).expect("reachable").nearest.distance;
-            let of_members = least;
+            let of_members = without.pose(&design, &pose).expect("reachable").nearest.distance;
             let has_proximal = architecture.chain().proximal.is_some();
-            for (index, joint) in joints.iter().enumerate() {
-                for capsule in &capsules {
-                    if !is_at_end(joint, capsule, has_proximal) {
-                        let ends = [capsule.from, capsule.to].map(|end| end.to_array());
-                        let axis = distance_to_cylinder(ends, joint.at.to_array(), joint.radius, joint.heights);
-                        // The depth of an axis within a cylinder is not measured.
-                        least = least.min(if axis > 0.0 {
-                            axis - capsule.radius
-                        } else {
-                            f64::NEG_INFINITY
-                        });
-                    }
-                }
-                for other in &joints[..index] {
-                    let shares = other.leg == joint.leg
-                        && (other.point != JointPoint::A || joint.point != JointPoint::C || !has_proximal);
-                    let is_rigid = other.point == joint.point && joint.point != JointPoint::B;
-                    if !shares && !is_rigid {
-                        least = least.min(between(joint, other));
-                    }
-                }
-            }
+            let least = of_members.min(clearance_of_joints(&joints, &capsules, has_proximal));
             let found = report.nearest.distance;
             if least.is_finite() {
                 assert!(
@@ -184,20 +190,22 @@ fn joints_keep_their_distance() {
     }
 }
 
+/// A design whose legs cross in the plane.
+const CROSSING: &str = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018";
+
+/// A model with a required clearance.
+fn stacked(stacking: Stacking) -> Model {
+    model(|settings| {
+        settings.thresholds.set(PoseScalar::Clearance, Some(0.004));
+        settings.bodies.stacking = stacking;
+    })
+}
+
 /// Legs that cross in the plane do not collide in layers of their own, where the pins of their joints are bodies.
 #[test]
 fn legs_in_layers_of_their_own_may_cross() {
-    let design: Design = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018"
-        .parse()
-        .expect("a design");
-    let required = 0.004;
-    let of = |stacking: Stacking| {
-        model(|settings| {
-            settings.thresholds.set(PoseScalar::Clearance, Some(required));
-            settings.bodies.stacking = stacking;
-        })
-    };
-    let (common, chosen) = (of(Stacking::Common), of(Stacking::Chosen));
+    let design = parsed(CROSSING);
+    let [common, chosen] = [Stacking::Common, Stacking::Chosen].map(stacked);
     assert_eq!(common.stack_of(&design).order, StackOrder::Common);
     assert!(matches!(chosen.stack_of(&design).order, StackOrder::Legs(_)));
     assert!(common.evaluate(&design, GridChoice::Reference).home.is_none());
@@ -207,28 +215,22 @@ fn legs_in_layers_of_their_own_may_cross() {
     // The legs are in three layers, and a pin that passes through one of them is the nearest body.
     let members = chosen.members(&design, &home).expect("reachable");
     let height = |leg: usize| {
-        let is_own = |member: MemberKind| member == MemberKind::TelescopicLeg;
-        let mut legs = members.iter().filter(|report| is_own(report.member.kind));
-        legs.find(|report| report.member.leg == leg).expect("a leg").from.z
+        let mut legs = members.iter().filter(|report| report.member.leg == leg);
+        let own = legs.find(|report| report.member.kind == MemberKind::TelescopicLeg);
+        own.expect("a leg").from.z
     };
     assert!(height(0) != height(1) && height(1) != height(2) && height(0) != height(2));
     let pair = evaluation.nearest.expect("a nearest pair").pair();
     assert!(pair.iter().any(|name| name.contains("joint")), "{pair:?}");
     // Where the common layers suffice, they are kept.
-    let apart: Design = "3-PRR R=4.0 r=2.12 Lb=3.3 rj=0.029 rp=0.073".parse().expect("a design");
+    let apart = parsed("3-PRR R=4.0 r=2.12 Lb=3.3 rj=0.029 rp=0.073");
     assert_eq!(chosen.stack_of(&apart), common.stack_of(&apart));
 }
 
 /// The clearance of a workspace in layers of their own is proved with the same heights as it is evaluated.
 #[test]
 fn a_workspace_in_chosen_layers_is_proved() {
-    let design: Design = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018"
-        .parse()
-        .expect("a design");
-    let model = model(|settings| {
-        settings.thresholds.set(PoseScalar::Clearance, Some(0.004));
-        settings.bodies.stacking = Stacking::Chosen;
-    });
+    let (design, model) = (parsed(CROSSING), stacked(Stacking::Chosen));
     let evaluation = model.evaluate(&design, GridChoice::Fine);
     let certify = |claimed_radius: f64| {
         let options = CertifyOptions {

@@ -2,7 +2,7 @@
 
 use kinefront_model::clearance::{BodySettings, Layers};
 use kinefront_model::dynamics::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};
-use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar};
+use kinefront_model::evaluation::{Bound, Model, ModelSettings, PoseScalar, Quantity, QuantityLimit, SizingRanges};
 use kinefront_model::mechanism::{
     Architecture, Arrangement, BarLength, CrossSection, Design, FURTHER_VARIABLES, LegSettings, Wall, WorkingMode,
 };
@@ -25,6 +25,45 @@ pub fn model(change: impl FnOnce(&mut ModelSettings)) -> Model {
     let mut settings = ModelSettings::default();
     change(&mut settings);
     Model::new(settings).expect("the grids fit the rotation range")
+}
+
+/// The design that a text states.
+pub fn parsed(text: &str) -> Design {
+    text.parse().expect("a design")
+}
+
+/// The scalars that the paper limits.
+pub const PAPER_LIMITS: [PoseScalar; 4] = [
+    PoseScalar::Dexterity,
+    PoseScalar::StiffnessXy,
+    PoseScalar::StiffnessZ,
+    PoseScalar::StiffnessPhiZ,
+];
+
+/// Ranges of bars up to a radius of 0.1 m.
+pub const fn bar_ranges(is_exact: bool) -> SizingRanges {
+    SizingRanges {
+        leg: [0.0, 0.1],
+        platform: [0.0, 0.1],
+        listed: [None, None],
+        is_exact,
+        scale: [1.0; 2],
+    }
+}
+
+/// Requires that a quantity of the design is at most a number.
+pub fn at_most(quantity: Quantity, most: f64) -> QuantityLimit {
+    let bound = Bound::AtMost(most);
+    QuantityLimit { quantity, bound }
+}
+
+/// Rails of solid bars of a radius \[m\], which bend.
+pub fn round_rails(radius: f64, supports: RailSupports) -> Option<RailSettings> {
+    Some(RailSettings {
+        section: CrossSection::Round,
+        radius,
+        supports,
+    })
 }
 
 pub fn working_mode() -> impl Strategy<Value = WorkingMode> {

@@ -1,31 +1,19 @@
 //! Strength, buckling, and the forces of joints and drives, compared with values from an independent program
 //! (tests/fixtures/README.md), and identities.
 
-use kinefront_model::evaluation::{GridChoice, Model, PoseScalar, Quantity, SizingRanges, WorkspaceTarget};
+use kinefront_model::evaluation::{GridChoice, Model, PoseScalar, Quantity, WorkspaceTarget};
 use kinefront_model::lanes::InstructionSet;
-use kinefront_model::mechanism::{CrossSection, CrossSections, Design, DesignVariable, Wall};
+use kinefront_model::mechanism::{Design, DesignVariable};
 use kinefront_model::spatial::Pose;
-use kinefront_model::stiffness::{RailSettings, RailSupports};
+use kinefront_model::stiffness::RailSupports;
 use kinefront_model::strength::{LARGEST_FACTOR, LoadShape, Loads, StrengthReport};
 use kinefront_testkit::numbers as random_numbers;
 use serde_json::Value;
 
-use super::legs::{design, settings};
-use super::reference::{fixture, number, pose};
-use super::strategies;
-
-fn section(value: &Value) -> CrossSection {
-    let wall = || Wall::Ratio(number(&value["wall_ratio"]));
-    match value["kind"].as_str() {
-        Some("tube") => CrossSection::Tube(wall()),
-        Some("square_tube") => CrossSection::SquareTube(wall()),
-        _ => CrossSection::Round,
-    }
-}
-
-fn numbers<const N: usize>(value: &Value) -> [f64; N] {
-    std::array::from_fn(|k| number(&value[k]))
-}
+use super::legs::settings;
+use super::reference::{cases_of, design, number, numbers, pose};
+use super::sections::sections;
+use super::strategies::{self, bar_ranges, parsed, round_rails};
 
 fn model(case: &Value, loads: Loads) -> Model {
     strategies::model(|model| {
@@ -38,10 +26,7 @@ fn model(case: &Value, loads: Loads) -> Model {
         if let Some(shortest) = case.get("telescopic_shortest") {
             model.legs.telescopic_shortest = number(shortest);
         }
-        model.sections = CrossSections {
-            legs: section(&case["sections"]["legs"]),
-            platform: section(&case["sections"]["platform"]),
-        };
+        model.sections = sections(case);
         model.loads = loads;
     })
 }
@@ -80,7 +65,7 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// Asserts that the worst values of a report agree with the expected ones.
+/// Asserts that the forces of the drives and the worst values of a report agree with the expected ones.
 fn worst_values_agree(found: &StrengthReport, wanted: &Value, name: &str) {
     for (value, key, tolerance) in [
         (found.stress, "stress_max_pa", 1e-9),
@@ -91,6 +76,69 @@ fn worst_values_agree(found: &StrengthReport, wanted: &Value, name: &str) {
         let wanted = number(&wanted[key]);
         agree(value, wanted, wanted, tolerance, &format!("{name}: {key}"));
     }
+    let efforts: [f64; 3] = numbers(&wanted["actuators"]);
+    let most = largest(efforts.into_iter());
+    for (value, wanted) in found.actuators.into_iter().zip(efforts) {
+        agree(value, wanted, most, 1e-9, &format!("{name}: drive"));
+    }
+}
+
+/// Asserts that the members of a report agree with the expected ones. Between the ends, weight bends a bar more.
+fn members_agree(found: &StrengthReport, members: &[Value], weighs: bool, name: &str) {
+    assert_eq!(found.members.len(), members.len(), "{name}");
+    let of = |key: &str| largest(members.iter().map(|member| number(&member[key])));
+    let ends = |member: &Value, entry: usize| [&member["start"], &member["end"]].map(|end| number(&end[entry]));
+    let at_ends = |entry: usize| largest(members.iter().flat_map(|member| ends(member, entry)));
+    for (member, wanted) in found.members.iter().zip(members) {
+        let (k_in, k_out) = (number(&wanted["k_in_plane"]), number(&wanted["k_out_of_plane"]));
+        let factor = number(&wanted["buckling_factor"]);
+        let [inside, outside] = member.effective_lengths.expect("rigid rails");
+        let ([first, last], axial) = (ends(wanted, 0), at_ends(0));
+        let bent = |value: f64, entry: usize| {
+            let at_end = largest(ends(wanted, entry).into_iter());
+            if weighs { value.max(at_end) } else { at_end }
+        };
+        let (torsion, out_of_plane, in_plane) = (member.torsion, member.moment_out_of_plane, member.moment_in_plane);
+        for (value, wanted_value, largest, tolerance, text) in [
+            (
+                member.stress,
+                number(&wanted["stress_pa"]),
+                of("stress_pa"),
+                1e-9,
+                "stress",
+            ),
+            (
+                member.euler,
+                number(&wanted["euler_n"]),
+                of("euler_n"),
+                1e-9,
+                "Euler's load",
+            ),
+            (inside, k_in, k_in, 1e-8, "k in the plane"),
+            (outside, k_out, k_out, 1e-8, "k out of the plane"),
+            (
+                member.buckling_factor.expect("rigid rails"),
+                factor,
+                factor,
+                1e-8,
+                "factor",
+            ),
+            (member.axial[0], first.min(last), axial, 1e-9, "least axial force"),
+            (member.axial[1], first.max(last), axial, 1e-9, "largest axial force"),
+            (torsion, bent(torsion, 3), at_ends(3), 1e-9, "torsion"),
+            (
+                out_of_plane,
+                bent(out_of_plane, 4),
+                at_ends(4),
+                1e-9,
+                "moment out of the plane",
+            ),
+            (in_plane, bent(in_plane, 5), at_ends(5), 1e-9, "moment in the plane"),
+        ] {
+            let what = format!("{name}: {text} of {}", wanted["name"]);
+            agree(value, wanted_value, largest, tolerance, &what);
+        }
+    }
 }
 
 #[test]
@@ -99,96 +147,20 @@ fn stresses_forces_and_factors_agree() {
         let wanted = &case["expected"];
         let found = report(case, false);
         let name = design(case).to_string();
-        let members = wanted["members"].as_array().expect("members");
-        assert_eq!(found.members.len(), members.len(), "{name}");
-        let of = |key: &str| largest(members.iter().map(|member| number(&member[key])));
-        let at_ends = |entry: usize| {
-            largest(
-                members
-                    .iter()
-                    .flat_map(|member| [&member["start"], &member["end"]].map(|end| number(&end[entry]))),
-            )
-        };
         let weighs = numbers::<3>(&case["gravity"]) != [0.0; 3];
-        for (member, wanted) in found.members.iter().zip(members) {
-            let what = |text: &str| format!("{name}: {text} of {}", wanted["name"]);
-            agree(
-                member.stress,
-                number(&wanted["stress_pa"]),
-                of("stress_pa"),
-                1e-9,
-                &what("stress"),
-            );
-            agree(
-                member.euler,
-                number(&wanted["euler_n"]),
-                of("euler_n"),
-                1e-9,
-                &what("Euler's load"),
-            );
-            let [inside, outside] = member.effective_lengths.expect("rigid rails");
-            let (k_in, k_out) = (number(&wanted["k_in_plane"]), number(&wanted["k_out_of_plane"]));
-            agree(inside, k_in, k_in, 1e-8, &what("k in the plane"));
-            agree(outside, k_out, k_out, 1e-8, &what("k out of the plane"));
-            let factor = number(&wanted["buckling_factor"]);
-            agree(
-                member.buckling_factor.expect("rigid rails"),
-                factor,
-                factor,
-                1e-8,
-                &what("factor"),
-            );
-            let ends = |entry: usize| [&wanted["start"], &wanted["end"]].map(|end| number(&end[entry]));
-            let axial = ends(0);
-            let most = at_ends(0);
-            agree(
-                member.axial[0],
-                axial[0].min(axial[1]),
-                most,
-                1e-9,
-                &what("least axial force"),
-            );
-            agree(
-                member.axial[1],
-                axial[0].max(axial[1]),
-                most,
-                1e-9,
-                &what("largest axial force"),
-            );
-            for (value, entry, text) in [
-                (member.torsion, 3, "torsion"),
-                (member.moment_out_of_plane, 4, "moment out of the plane"),
-                (member.moment_in_plane, 5, "moment in the plane"),
-            ] {
-                let wanted = largest(ends(entry).into_iter());
-                // Between the ends, weight bends a bar more.
-                let wanted = if weighs { value.max(wanted) } else { wanted };
-                agree(value, wanted, at_ends(entry), 1e-9, &what(text));
-            }
-        }
+        members_agree(&found, wanted["members"].as_array().expect("members"), weighs, &name);
         let joints = wanted["joints"].as_array().expect("joints");
         let of = |key: &str| largest(joints.iter().map(|joint| number(&joint[key])));
         for (joint, wanted) in found.joints.iter().zip(joints) {
-            let what = |text: &str| format!("{name}: {text} of {}", wanted["name"]);
-            for (value, key) in [
-                (joint.radial, "radial_n"),
-                (joint.axial, "axial_n"),
-                (joint.force, "force_n"),
+            for (value, key, largest) in [
+                (joint.radial, "radial_n", "force_n"),
+                (joint.axial, "axial_n", "force_n"),
+                (joint.force, "force_n", "force_n"),
+                (joint.moment, "moment_nm", "moment_nm"),
             ] {
-                agree(value, number(&wanted[key]), of("force_n"), 1e-9, &what(key));
+                let what = format!("{name}: {key} of {}", wanted["name"]);
+                agree(value, number(&wanted[key]), of(largest), 1e-9, &what);
             }
-            agree(
-                joint.moment,
-                number(&wanted["moment_nm"]),
-                of("moment_nm"),
-                1e-9,
-                &what("moment"),
-            );
-        }
-        let efforts: [f64; 3] = numbers(&wanted["actuators"]);
-        let most = largest(efforts.into_iter());
-        for (value, wanted) in found.actuators.into_iter().zip(efforts) {
-            agree(value, wanted, most, 1e-9, &format!("{name}: drive"));
         }
         worst_values_agree(&found, wanted, &name);
     }
@@ -214,25 +186,12 @@ fn the_worst_of_a_set_agrees() {
             let value = (-member.axial[0]).max(0.0);
             agree(value, number(compression), most, 1e-9, &format!("{name}: compression"));
         }
-        let efforts: [f64; 3] = numbers(&wanted["actuators"]);
-        for (value, wanted) in found.actuators.into_iter().zip(efforts) {
-            agree(
-                value,
-                wanted,
-                largest(efforts.into_iter()),
-                1e-9,
-                &format!("{name}: drive"),
-            );
-        }
         worst_values_agree(&found, wanted, &name);
     }
 }
 
 fn cases() -> Vec<Value> {
-    fixture("strength_cases.json")["cases"]
-        .as_array()
-        .expect("cases")
-        .clone()
+    cases_of("strength_cases.json", "cases")
 }
 
 fn under(case: &Value, loads: Loads) -> StrengthReport {
@@ -338,13 +297,7 @@ fn limited(change: impl FnOnce(&mut kinefront_model::evaluation::ModelSettings))
 /// Bars are sized for strength as they are for stiffness: what limits them is just kept.
 #[test]
 fn bars_are_sized_for_a_stress_that_they_just_keep() {
-    let ranges = SizingRanges {
-        leg: [0.0, 0.1],
-        platform: [0.0, 0.1],
-        listed: [None, None],
-        is_exact: false,
-        scale: [1.0; 2],
-    };
+    let ranges = bar_ranges(false);
     let model = limited(|_| {});
     let mut kept = 0;
     for (text, radius) in [
@@ -353,7 +306,7 @@ fn bars_are_sized_for_a_stress_that_they_just_keep() {
         ("3-RPR R=1.5636 r=0.1006 Lb=2.2135 rj=0.017 rp=0.021", 0.5),
         ("3-RRR R=0.7 r=0.11 Lb=0.56 rj=0.03 rp=0.02", 0.3),
     ] {
-        let design: Design = text.parse().expect("a design");
+        let design = parsed(text);
         let sized = model
             .sized(&design, &ranges, WorkspaceTarget::Radius(radius))
             .expect("bars");
@@ -372,9 +325,7 @@ fn bars_are_sized_for_a_stress_that_they_just_keep() {
 
 #[test]
 fn a_limit_of_the_strength_bounds_the_workspace() {
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     let radius_of = |model: &Model| model.evaluate(&design, GridChoice::Reference).workspace_radius();
     let free = radius_of(&strategies::model(|_| {}));
     let bounded = limited(|_| {});
@@ -404,13 +355,14 @@ fn a_limit_of_the_strength_bounds_the_workspace() {
 fn what_does_not_exist_has_no_value() {
     let at_origin = Pose::new(0.0, 0.0, 0.3);
     let model = Model::default();
-    let design: Design = "3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056"
-        .parse()
-        .expect("a design");
+    let design = parsed("3-PRR R=3.066 r=1.283 Lb=1.896 rj=0.036 rp=0.056");
     let report = |model: &Model, design: &Design, pose: &Pose| model.posed(design).strength_at(pose, None);
-    let found = report(&model, &design, &at_origin)
-        .expect("reachable")
-        .expect("strength");
+    let of_bars = |model: &Model| {
+        report(model, &design, &at_origin)
+            .expect("reachable")
+            .expect("strength")
+    };
+    let found = of_bars(&model);
     assert_eq!(found.safety_factor, None);
     let at_pose = model.pose(&design, &at_origin).expect("reachable").values;
     assert_eq!(at_pose.get(PoseScalar::SafetyFactor), None);
@@ -422,16 +374,8 @@ fn what_does_not_exist_has_no_value() {
     assert_eq!(report(&model, &thin, &at_origin).expect("reachable"), None);
     assert!(report(&model, &design, &Pose::new(9.0, 0.0, 0.0)).is_err());
     // On rails that bend, the share of the rails in buckling is not known.
-    let on_rails = strategies::model(|settings| {
-        settings.rails = Some(RailSettings {
-            section: CrossSection::Round,
-            radius: 0.03,
-            supports: RailSupports::Pinned,
-        });
-    });
-    let found = report(&on_rails, &design, &at_origin)
-        .expect("reachable")
-        .expect("strength");
+    let on_rails = strategies::model(|settings| settings.rails = round_rails(0.03, RailSupports::Pinned));
+    let found = of_bars(&on_rails);
     assert_eq!(
         (found.buckling_factor, found.members[0].effective_lengths),
         (None, None)
@@ -444,9 +388,7 @@ fn what_does_not_exist_has_no_value() {
             ..Loads::default().with_wrench([0.0; 6])
         };
     });
-    let found = report(&idle, &design, &at_origin)
-        .expect("reachable")
-        .expect("strength");
+    let found = of_bars(&idle);
     assert_eq!(
         (found.stress, found.joint_force, found.buckling_factor),
         (0.0, 0.0, Some(LARGEST_FACTOR))

@@ -21,8 +21,9 @@ use std::cmp::Ordering;
 use descent::Descent;
 use strategy::{Strategy, reflected};
 
+use super::dominance::order;
 use super::random::Random;
-use super::{Algorithm, Candidate, Evaluated, Outcome, Problem, Target, Variable, doe};
+use super::{Algorithm, Candidate, Evaluated, Outcome, Problem, Variable, doe};
 
 /// Parameters of [`CmaEs`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -355,11 +356,7 @@ impl Algorithm for CmaEs {
             candidates.map(|x| (niche, x)).collect()
         };
         self.pending = asked.iter().map(|(niche, _)| *niche).collect();
-        let candidate = |(_, x)| Candidate {
-            x,
-            target: Some(Target::Best),
-        };
-        asked.into_iter().map(candidate).collect()
+        asked.into_iter().map(|(_, x)| Candidate::seeking_best(x)).collect()
     }
 
     fn tell(&mut self, evaluated: Vec<Evaluated>) {
@@ -380,15 +377,6 @@ impl Algorithm for CmaEs {
         }
         self.generation += 1;
     }
-}
-
-/// Ranks feasible outcomes by the objective, then infeasible ones by violation.
-fn order(a: &Outcome, b: &Outcome) -> Ordering {
-    let key = |outcome: &Outcome| (outcome.violation.max(0.0), outcome.objectives[0]);
-    let ((violation_a, objective_a), (violation_b, objective_b)) = (key(a), key(b));
-    violation_a
-        .total_cmp(&violation_b)
-        .then(objective_a.total_cmp(&objective_b))
 }
 
 /// Returns the value that a descent sees: the objective with a penalty; infinite for a very large violation.

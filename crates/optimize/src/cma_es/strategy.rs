@@ -77,16 +77,12 @@ impl Strategy {
             .clamp(0.0, 1.0 - rank_one);
         let expected = libm::sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
 
-        let mean_normal: Vec<f64> = (0..count)
-            .map(|k| {
-                ranked
-                    .iter()
-                    .zip(&weights)
-                    .map(|(&i, weight)| weight * self.normals[i][k])
-                    .sum()
-            })
-            .collect();
-        let moved: Vec<f64> = (0..count).map(|k| dot(&self.factor[k][..=k], &mean_normal)).collect();
+        let mean_of = |k: usize| {
+            let best = ranked.iter().zip(&weights);
+            best.map(|(&i, weight)| weight * self.normals[i][k]).sum()
+        };
+        let mean_normal: Vec<f64> = (0..count).map(mean_of).collect();
+        let moved = self.turned(&mean_normal);
         for (mean, by) in self.mean.iter_mut().zip(&moved) {
             *mean = reflected(*mean + self.step * by);
         }
@@ -108,29 +104,37 @@ impl Strategy {
         let kept = 1.0 - rank_one - rank_many + lost;
         let steps: Vec<Vec<f64>> = ranked[..parents]
             .iter()
-            .map(|&i| {
-                (0..count)
-                    .map(|k| dot(&self.factor[k][..=k], &self.normals[i]))
-                    .collect()
-            })
+            .map(|&i| self.turned(&self.normals[i]))
             .collect();
-        let mut covariance = vec![vec![0.0; count]; count];
-        for row in 0..count {
-            for column in 0..=row {
-                let before = dot(&self.factor[row][..=column], &self.factor[column][..=column]);
-                let many: f64 = steps
-                    .iter()
-                    .zip(&weights)
-                    .map(|(step, weight)| weight * step[row] * step[column])
-                    .sum();
-                covariance[row][column] =
-                    kept * before + rank_one * self.path[row] * self.path[column] + rank_many * many;
-            }
-        }
+        let covariance = self.covariance([kept, rank_one, rank_many], &steps, &weights);
         if let Some(factor) = cholesky(&covariance) {
             self.factor = factor;
         }
         self.step *= libm::exp((step_rate / damping * (length / expected - 1.0)).min(1.0));
+    }
+
+    /// Returns the step of a standard normal vector, in units of the step size.
+    fn turned(&self, normal: &[f64]) -> Vec<f64> {
+        let at = |k: usize| dot(&self.factor[k][..=k], normal);
+        (0..self.mean.len()).map(at).collect()
+    }
+
+    /// Returns the lower triangle of the covariance matrix after a generation, from shares of the matrix before, of the path, and of the
+    /// steps of the better half with their weights.
+    fn covariance(&self, shares: [f64; 3], steps: &[Vec<f64>], weights: &[f64]) -> Vec<Vec<f64>> {
+        let [kept, rank_one, rank_many] = shares;
+        let count = self.mean.len();
+        let mut covariance = vec![vec![0.0; count]; count];
+        for row in 0..count {
+            for column in 0..=row {
+                let before = dot(&self.factor[row][..=column], &self.factor[column][..=column]);
+                let of_step = |(step, weight): (&Vec<f64>, &f64)| weight * step[row] * step[column];
+                let many: f64 = steps.iter().zip(weights).map(of_step).sum();
+                covariance[row][column] =
+                    kept * before + rank_one * self.path[row] * self.path[column] + rank_many * many;
+            }
+        }
+        covariance
     }
 
     /// Ranks candidates by the objective with its penalty, then those with a larger violation, and adapts the penalty so that a

@@ -7,6 +7,7 @@
 use super::gaps::Gaps;
 use super::quadratic::{Datum, Quadratics};
 use crate::random::Random;
+use crate::selection::squared_distance;
 use crate::{Archive, Evaluated, Target, Variable};
 
 /// Number of data of a model, as a multiple of its coefficients.
@@ -179,7 +180,7 @@ impl Learner {
         // The nearest samples so far, in ascending order of the squared distance; of equals, the earlier sample first.
         let mut nearest: Vec<(f64, usize)> = Vec::with_capacity(most + 1);
         for (sample, point) in self.points.chunks_exact(count).enumerate() {
-            let square: f64 = point.iter().zip(base).map(|(at, base)| (at - base) * (at - base)).sum();
+            let square = squared_distance(point, base);
             if nearest.len() == most && square >= nearest[most - 1].0 {
                 continue;
             }

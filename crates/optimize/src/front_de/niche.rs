@@ -2,8 +2,9 @@
 
 use super::Success;
 use super::learner::Learner;
+use crate::dominance::order;
 use crate::population::{PopulationMember, ranked};
-use crate::selection::scaled;
+use crate::selection::{scaled, squared_distance};
 use crate::{Evaluated, Objectives};
 
 /// Candidates of one combination of the categorical variables.
@@ -55,9 +56,12 @@ pub fn nearest(population: &[PopulationMember], count: usize) -> Vec<Vec<usize>>
         return Vec::new();
     }
     let points = scaled(&objectives);
-    let square = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum() };
     let of = |point: &Vec<f64>| {
-        let mut order: Vec<(f64, usize)> = points.iter().map(|other| square(point, other)).zip(0..).collect();
+        let mut order: Vec<(f64, usize)> = points
+            .iter()
+            .map(|other| squared_distance(point, other))
+            .zip(0..)
+            .collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         order.into_iter().take(count).map(|(_, place)| place).collect()
     };
@@ -68,13 +72,6 @@ pub fn nearest(population: &[PopulationMember], count: usize) -> Vec<Vec<usize>>
 /// violation.
 pub fn along_front(candidates: Vec<Evaluated>) -> Vec<PopulationMember> {
     let mut members = ranked(candidates);
-    members.sort_by(|a, b| {
-        let key = |member: &PopulationMember| {
-            let outcome = &member.candidate.outcome;
-            (outcome.violation.max(0.0), outcome.objectives[0])
-        };
-        let ((violation_a, first_a), (violation_b, first_b)) = (key(a), key(b));
-        violation_a.total_cmp(&violation_b).then(first_a.total_cmp(&first_b))
-    });
+    members.sort_by(|a, b| order(&a.candidate.outcome, &b.candidate.outcome));
     members
 }

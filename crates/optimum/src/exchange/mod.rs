@@ -1,8 +1,9 @@
 //! The search for the best design near a start: critical poses are exchanged, and a sequential quadratic programme keeps them.
 
+mod step;
+
 use nalgebra::{DMatrix, DVector};
 
-use super::convex::ConvexProgram;
 use super::hessian::Hessian;
 use super::multipliers::Multipliers;
 use super::patience::Patience;
@@ -11,6 +12,7 @@ use super::polished::Polished;
 use super::problem::LocalProblem;
 use super::requirement::{Critical, Kind, NOWHERE};
 use super::survey::{FOLLOWED, is_same, largest_violation, missed};
+use step::Step;
 
 /// Largest number of times that critical poses are added.
 const ROUNDS: usize = 40;
@@ -69,9 +71,6 @@ const LIGHTEST: f64 = 20.0;
 /// Largest weight of the violations.
 const HEAVIEST: f64 = 2e3;
 
-/// Curvature that the cost of a violation has, so that a step is unique.
-const BENT: f64 = 1e-3;
-
 /// Critical poses with more slack than this are forgotten.
 const SLACK: f64 = 0.25;
 
@@ -93,14 +92,6 @@ pub(crate) struct Exchange<'a> {
     left: f64,
     /// The kinds of requirements that there are.
     kinds: Vec<Kind>,
-}
-
-/// A step of the quadratic programme.
-struct Step {
-    change: DVector<f64>,
-    multipliers: Vec<f64>,
-    /// Decrease of the merit that the programme promises.
-    promised: f64,
 }
 
 impl<'a> Exchange<'a> {
@@ -267,24 +258,7 @@ impl<'a> Exchange<'a> {
             if size < self.smallest_step() {
                 return;
             }
-            let merit = self.merit(&self.unknowns, &values);
-            let (mut changed, mut new_values) = self.tried(&step.change);
-            let mut gain = merit - self.merit(&changed, &new_values);
-            if gain < 0.1 * step.promised {
-                // The constraints bend: their values at the end of the step take the place of those at its beginning.
-                let bent: Vec<f64> = new_values
-                    .iter()
-                    .zip((&rows * &step.change).iter())
-                    .map(|(value, linear)| value - linear)
-                    .collect();
-                if let Some(second) = self.step(&gradient, &rows, &bent, trust) {
-                    let (again, values_again) = self.tried(&second.change);
-                    let gain_again = merit - self.merit(&again, &values_again);
-                    if gain_again > gain {
-                        (changed, new_values, gain) = (again, values_again, gain_again);
-                    }
-                }
-            }
+            let (changed, new_values, gain) = self.better_end(&step, &gradient, &rows, &values, trust);
             let is_good = gain > 1e-4 * step.promised.max(0.0) && gain > 0.0;
             if !is_good {
                 if size < 1e-8 || step.promised < 1e-13 {
@@ -313,6 +287,35 @@ impl<'a> Exchange<'a> {
         }
     }
 
+    /// Returns the unknowns after a step, the values of the critical requirements there, and the decrease of the merit. A step that keeps
+    /// less than it promises is taken again for constraints that bend, if that is better.
+    fn better_end(
+        &mut self,
+        step: &Step,
+        gradient: &DVector<f64>,
+        rows: &DMatrix<f64>,
+        values: &[f64],
+        trust: f64,
+    ) -> (Vec<f64>, Vec<f64>, f64) {
+        let merit = self.merit(&self.unknowns, values);
+        let (changed, new_values) = self.tried(&step.change);
+        let gain = merit - self.merit(&changed, &new_values);
+        if gain < 0.1 * step.promised {
+            // The constraints bend: their values at the end of the step take the place of those at its beginning.
+            let linear = rows * &step.change;
+            let bent = new_values.iter().zip(linear.iter());
+            let bent: Vec<f64> = bent.map(|(value, linear)| value - linear).collect();
+            if let Some(second) = self.step(gradient, rows, &bent, trust) {
+                let (again, values_again) = self.tried(&second.change);
+                let gain_again = merit - self.merit(&again, &values_again);
+                if gain_again > gain {
+                    return (again, values_again, gain_again);
+                }
+            }
+        }
+        (changed, new_values, gain)
+    }
+
     /// Returns the size of a step that is no longer taken. What it leaves of the minimised value is less than the slack, so that it is larger
     /// once the requirements miss no more than the slack allows.
     fn smallest_step(&self) -> f64 {
@@ -332,77 +335,5 @@ impl<'a> Exchange<'a> {
             .collect();
         let values = self.problem.values_of(&moved, &self.critical);
         (moved, values)
-    }
-
-    /// Returns the largest violation of each kind of requirement.
-    fn violations(&self, values: &[f64]) -> Vec<f64> {
-        let mut violations = vec![0.0f64; self.kinds.len()];
-        for (critical, value) in self.critical.iter().zip(values) {
-            let violation: &mut f64 = &mut violations[self.kind(critical)];
-            *violation = violation.max(-value);
-        }
-        violations
-    }
-
-    fn kind(&self, critical: &Critical) -> usize {
-        let kind = critical.requirement.kind();
-        self.kinds.iter().position(|other| *other == kind).unwrap_or(0)
-    }
-
-    /// Returns the minimised value, raised by the largest violation of each kind of requirement: if the largest of all counted alone,
-    /// one requirement that is far from holding would let the others go.
-    fn merit(&self, unknowns: &[f64], values: &[f64]) -> f64 {
-        let violation: f64 = self.violations(values).iter().sum();
-        self.problem.minimised(unknowns) + self.weight * violation
-    }
-
-    /// Solves the quadratic programme about the unknowns. Where its constraints contradict each other, they are missed as little as
-    /// possible.
-    fn step(&mut self, gradient: &DVector<f64>, rows: &DMatrix<f64>, values: &[f64], trust: f64) -> Option<Step> {
-        let count = self.unknowns.len();
-        if !gradient.iter().chain(rows.iter()).all(|number| number.is_finite()) {
-            return None;
-        }
-        // The last variables are the largest violation of each kind.
-        let kinds = self.kinds.len();
-        let mut program = ConvexProgram::new(count + kinds);
-        program
-            .quadratic
-            .view_mut((0, 0), (count, count))
-            .copy_from(self.hessian.matrix());
-        (count..count + kinds).for_each(|violation| program.quadratic[(violation, violation)] = BENT);
-        program.linear.rows_mut(0, count).copy_from(gradient);
-        program.linear.rows_mut(count, kinds).fill(self.weight);
-        for (row, value) in values.iter().enumerate() {
-            let mut row_of = DVector::zeros(count + kinds);
-            row_of.rows_mut(0, count).copy_from(&rows.row(row).transpose());
-            row_of[count + self.kind(&self.critical[row])] = 1.0;
-            program.at_least.push((row_of, -value));
-        }
-        for unknown in 0..count {
-            let [lower, upper] = self.reach[unknown].map(|bound| bound - self.unknowns[unknown]);
-            program.bound_below(unknown, lower.max(-trust));
-            program.bound_above(unknown, upper.min(trust));
-        }
-        (count..count + kinds).for_each(|violation| program.bound_below(violation, 0.0));
-        let solution = program.solve_strictly()?;
-        let change: DVector<f64> = solution.x.rows(0, count).into_owned();
-        let multipliers = solution.multipliers[..values.len()].to_vec();
-        let left: f64 = solution
-            .x
-            .rows(count, kinds)
-            .iter()
-            .map(|violation| violation.max(0.0))
-            .sum();
-        let violation: f64 = self.violations(values).iter().sum();
-        let promised = self.weight * (violation - left) - gradient.dot(&change) - self.hessian.half_square(&change);
-        if left > 1e-9 && self.weight < HEAVIEST {
-            self.weight *= 2.0;
-        }
-        Some(Step {
-            change,
-            multipliers,
-            promised,
-        })
     }
 }
