@@ -10,6 +10,7 @@ mod chain;
 mod chain_enclosure;
 mod chains;
 mod design;
+mod design_variable;
 mod driven_leg;
 mod geometry;
 mod joint;
@@ -28,7 +29,8 @@ pub use chain::{
     ProximalLanes, Solved,
 };
 pub use chain_enclosure::{ChainEnclosure, LegFrameEnclosure, LegToEnclose, ProximalEnclosure, REACH_FORMS};
-pub use design::{DESIGN_VARIABLES, Design, DesignError, DesignVariable, FURTHER_VARIABLES, WorkingMode};
+pub use design::{Design, DesignError, WorkingMode};
+pub use design_variable::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
 pub use driven_leg::DrivenLeg;
 pub use geometry::{Arrangement, Geometry, LegFrame};
 pub use joint::{CylinderSize, JointKind, JointMasses, JointPart, JointPoint, JointSizes};
