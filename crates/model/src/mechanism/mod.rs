@@ -16,7 +16,6 @@ mod geometry;
 mod joint;
 mod leg;
 mod leg_enclosure;
-mod leg_sizes;
 mod member;
 mod section;
 mod settings;
@@ -25,8 +24,8 @@ mod text;
 
 pub use body::{LegBody, LegJoint, LegPart, Travel, TravelKind};
 pub use chain::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainLanes, ChainPosture, DistalLanes, LockedKind, LockedLeg,
-    ProximalLanes, Solved,
+    Assembly, BarPosture, Chain, ChainDescription, ChainLanes, ChainPosture, DistalLanes, LegSizes, LockedKind,
+    LockedLeg, ProximalLanes, Solved,
 };
 pub use chain_enclosure::{ChainEnclosure, LegFrameEnclosure, LegToEnclose, ProximalEnclosure, REACH_FORMS};
 pub use design::{Design, DesignError, WorkingMode};
@@ -36,7 +35,6 @@ pub use geometry::{Arrangement, Geometry, LegFrame};
 pub use joint::{CylinderSize, JointKind, JointMasses, JointPart, JointPoint, JointSizes};
 pub use leg::{BarLoads, Leg, LegLanes, LegPosture, LineLoads, Manipulator, Posture};
 pub use leg_enclosure::{EnclosedLoads, LegEnclosure};
-pub use leg_sizes::LegSizes;
 pub use member::{MemberAxis, MemberKind, Members};
 pub use section::{Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Wall};
 pub use settings::{BarLength, LegSettings};

@@ -3,9 +3,10 @@
 
 use glam::DVec2;
 
-use super::{absolute, enclosed_within, guide_bar, margin_within_both, pin, prismatic, slider_body};
+use super::{absolute, enclosed_within, margin_within_both};
 use crate::enclosure::{Interval, PlanarModel, TaylorModel};
 use crate::lanes::{Planar, Real};
+use crate::mechanism::chain::bodies::{guide_bar, pin, prismatic, slider_body};
 use crate::mechanism::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DesignVariable, JointKind,
     JointPoint, LegBody, LegFrame, LegPart, LegSizes, LegToEnclose, LockedKind, LockedLeg, MemberKind, Shortfall,
@@ -50,11 +51,7 @@ impl Chain for PprChain {
             0 => (anchor + rail * value, leg.slider_guide.perp()),
             _ => (anchor + leg.slider_guide * value, rail.perp()),
         };
-        LockedLeg {
-            platform: leg.frame.platform_joint,
-            base,
-            kind: LockedKind::BaseLine(normal),
-        }
+        LockedLeg::new(leg.frame.platform_joint, base, LockedKind::BaseLine(normal))
     }
 
     #[inline(always)]

@@ -47,26 +47,13 @@ impl Chain for PrpChain {
     }
 
     fn locked(leg: &LegSizes, driven: usize, value: f64) -> LockedLeg {
-        let LegFrame {
-            anchor,
-            rail,
-            platform_joint,
-            ..
-        } = leg.frame;
-        let guide = leg.frame.platform_guide(platform_joint);
-        let (platform, base, kind) = match driven {
-            0 => (
-                platform_joint,
-                anchor + rail * value,
-                LockedKind::PlatformLine(guide.perp()),
-            ),
-            _ => (
-                platform_joint + guide * value,
-                anchor,
-                LockedKind::BaseLine(rail.perp()),
-            ),
-        };
-        LockedLeg { platform, base, kind }
+        let LegFrame { anchor, rail, .. } = leg.frame;
+        let c = leg.frame.platform_joint;
+        let guide = leg.frame.platform_guide(c);
+        match driven {
+            0 => LockedLeg::new(c, anchor + rail * value, LockedKind::PlatformLine(guide.perp())),
+            _ => LockedLeg::new(c + guide * value, anchor, LockedKind::BaseLine(rail.perp())),
+        }
     }
 
     #[inline(always)]

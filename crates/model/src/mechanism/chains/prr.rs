@@ -43,25 +43,16 @@ impl Chain for PrrChain {
     }
 
     fn locked(leg: &LegSizes, driven: usize, value: f64) -> LockedLeg {
-        let LegFrame {
-            anchor,
-            rail,
-            platform_joint,
-            ..
-        } = leg.frame;
-        let (platform, base, kind) = match driven {
-            0 => (platform_joint, anchor + rail * value, LockedKind::Circle(leg.link)),
+        let LegFrame { anchor, rail, .. } = leg.frame;
+        let (c, along_rail) = (leg.frame.platform_joint, LockedKind::BaseLine(rail.perp()));
+        match driven {
+            0 => LockedLeg::new(c, anchor + rail * value, LockedKind::Circle(leg.link)),
             1 => {
                 let link = Rotation::new(value).apply(rail) * leg.link;
-                (platform_joint, anchor + link, LockedKind::BaseLine(rail.perp()))
+                LockedLeg::new(c, anchor + link, along_rail)
             }
-            _ => (
-                platform_joint - unit(-value) * leg.link,
-                anchor,
-                LockedKind::BaseLine(rail.perp()),
-            ),
-        };
-        LockedLeg { platform, base, kind }
+            _ => LockedLeg::new(c - unit(-value) * leg.link, anchor, along_rail),
+        }
     }
 
     #[inline(always)]

@@ -3,12 +3,11 @@
 
 use glam::DVec2;
 
-use super::{
-    absolute, enclosed_guide, enclosed_within, guide_axis, guide_bar, margin_within_both, pin, platform_guide,
-    platform_guide_body, prismatic, revolute, turned,
-};
+use super::{absolute, enclosed_within, margin_within_both, platform_guide, turned};
 use crate::enclosure::{Interval, MembersEnclosure, PlanarModel, TaylorModel, cross as cross_models};
 use crate::lanes::{Planar, Real};
+use crate::mechanism::chain::bodies::{guide_bar, pin, platform_guide_body, prismatic, revolute};
+use crate::mechanism::chain::members::{enclosed_guide, guide_axis};
 use crate::mechanism::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DesignVariable,
     DistalLanes, JointKind, JointPoint, LegBody, LegFrameEnclosure, LegPart, LegSizes, LegToEnclose, LockedKind,
@@ -62,17 +61,12 @@ impl Chain for RppChain {
     }
 
     fn locked(leg: &LegSizes, driven: usize, value: f64) -> LockedLeg {
-        let c = leg.frame.platform_joint;
+        let (a, c) = (leg.frame.anchor, leg.frame.platform_joint);
         let guide = leg.frame.platform_guide(c);
         let base_guide = base_guide_of(leg, guide);
-        let (platform, normal) = match driven {
-            1 => (c - base_guide * value, guide.perp()),
-            _ => (c + guide * value, base_guide.perp()),
-        };
-        LockedLeg {
-            platform,
-            base: leg.frame.anchor,
-            kind: LockedKind::PlatformLine(normal),
+        match driven {
+            1 => LockedLeg::new(c - base_guide * value, a, LockedKind::PlatformLine(guide.perp())),
+            _ => LockedLeg::new(c + guide * value, a, LockedKind::PlatformLine(base_guide.perp())),
         }
     }
 

@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
-use super::{margin_within, pin, prismatic, revolute};
+use super::margin_within;
 use crate::enclosure::{AxisEnclosure, Interval, MembersEnclosure, PlanarModel, TaylorModel, difference, dot};
 use crate::lanes::{Planar, Real};
+use crate::mechanism::chain::bodies::{pin, prismatic, revolute};
 use crate::mechanism::{
     Assembly, BarLength, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DistalLanes,
     JointKind, JointPoint, LegBody, LegPart, LegSizes, LegToEnclose, LockedKind, LockedLeg, MemberAxis, MemberKind,
@@ -45,15 +46,12 @@ impl Chain for RprChain {
     }
 
     fn locked(leg: &LegSizes, driven: usize, value: f64) -> LockedLeg {
-        LockedLeg {
-            platform: leg.frame.platform_joint,
-            base: leg.frame.anchor,
-            kind: match driven {
-                0 => LockedKind::BaseLine(unit(value).perp()),
-                1 => LockedKind::Circle(value),
-                _ => LockedKind::PlatformLine(unit(-value).perp()),
-            },
-        }
+        let kind = match driven {
+            0 => LockedKind::BaseLine(unit(value).perp()),
+            1 => LockedKind::Circle(value),
+            _ => LockedKind::PlatformLine(unit(-value).perp()),
+        };
+        LockedLeg::new(leg.frame.platform_joint, leg.frame.anchor, kind)
     }
 
     #[inline(always)]

@@ -48,13 +48,12 @@ impl Chain for RrpChain {
     fn locked(leg: &LegSizes, driven: usize, value: f64) -> LockedLeg {
         let (a, c) = (leg.frame.anchor, leg.frame.platform_joint);
         let guide = leg.frame.platform_guide(c);
-        let crank = leg.proximal;
-        let (platform, base, kind) = match driven {
-            0 => (c, a + unit(value) * crank, LockedKind::PlatformLine(guide.perp())),
-            1 => (c - unit(-value) * crank, a, LockedKind::PlatformLine(guide.perp())),
-            _ => (c + guide * value, a, LockedKind::Circle(crank)),
-        };
-        LockedLeg { platform, base, kind }
+        let (crank, along_guide) = (leg.proximal, LockedKind::PlatformLine(guide.perp()));
+        match driven {
+            0 => LockedLeg::new(c, a + unit(value) * crank, along_guide),
+            1 => LockedLeg::new(c - unit(-value) * crank, a, along_guide),
+            _ => LockedLeg::new(c + guide * value, a, LockedKind::Circle(crank)),
+        }
     }
 
     #[inline(always)]

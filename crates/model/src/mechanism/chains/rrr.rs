@@ -66,11 +66,7 @@ impl Chain for RrrChain {
             1 => (c, a, (DVec2::X * crank + unit(value) * link).length()),
             _ => (c - unit(-value) * link, a, crank),
         };
-        LockedLeg {
-            platform,
-            base,
-            kind: LockedKind::Circle(radius),
-        }
+        LockedLeg::new(platform, base, LockedKind::Circle(radius))
     }
 
     #[inline(always)]

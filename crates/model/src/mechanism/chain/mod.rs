@@ -1,14 +1,21 @@
 //! The interface of a chain: three joints from the base to the platform, whichever of them is driven.
 
+pub(super) mod bodies;
+pub(super) mod members;
+mod sizes;
+
+pub use sizes::LegSizes;
+
 use glam::DVec2;
 
 use super::chain_enclosure::{ChainEnclosure, LegToEnclose};
-use super::chains::{enclosed_members, leg_bodies, members_of};
 use super::joint::{JointKind, JointPoint};
-use super::{DesignVariable, LegBody, LegSizes, MemberKind, Members, Shortfall, Within};
+use super::{DesignVariable, LegBody, MemberKind, Members, Shortfall, Within};
 use crate::enclosure::{MembersEnclosure, PlanarModel};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{Pose, Rotation};
+use bodies::leg_bodies;
+use members::{enclosed_members, members_of};
 
 /// Static description of a chain, independent of its lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +45,7 @@ impl ChainDescription {
     }
 
     /// Returns whether the last joint is a carriage on a guide of the platform.
-    pub(super) const fn has_platform_guide(&self) -> bool {
+    const fn has_platform_guide(&self) -> bool {
         matches!(self.joints[2], JointKind::Prismatic)
     }
 }
@@ -120,6 +127,11 @@ pub enum LockedKind {
 }
 
 impl LockedLeg {
+    /// Creates what is required of a point of the platform and a point of the base.
+    pub(super) fn new(platform: DVec2, base: DVec2, kind: LockedKind) -> Self {
+        Self { platform, base, kind }
+    }
+
     /// Returns the radius of the circle, 0 for a line.
     pub fn radius(&self) -> f64 {
         match self.kind {

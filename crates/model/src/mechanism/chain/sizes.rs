@@ -2,11 +2,9 @@
 
 use glam::DVec2;
 
-use super::{
-    Assembly, BarLength, ChainDescription, ChainPosture, Design, JointKind, LegFrame, LegSettings, MemberKind, Travel,
-    TravelKind,
-};
+use super::{Assembly, ChainDescription, ChainPosture};
 use crate::lanes::{Planar, Real};
+use crate::mechanism::{BarLength, Design, JointKind, LegFrame, LegSettings, MemberKind, Travel, TravelKind};
 use crate::spatial::{Rotation, cross};
 
 /// The constants of one leg of one design, whatever its chain; lengths in metres.
@@ -77,12 +75,12 @@ impl LegSizes {
 
     /// Returns the vector from `A_i` to `C_i` at several poses at once, with `C_i` at `position + arm`.
     #[inline(always)]
-    pub(super) fn chord<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> Planar<V> {
+    pub(in crate::mechanism) fn chord<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> Planar<V> {
         position.plus(arm.minus(Planar::splat(position.x, self.frame.anchor)))
     }
 
     /// Returns the values of the three joints \[m or rad\], angles in (−π, π].
-    pub(super) fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {
+    pub(in crate::mechanism) fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {
         use JointKind::{Prismatic, Revolute};
         let orientation = self.frame.orientation(arm);
         let distal = posture.distal;
@@ -114,14 +112,14 @@ impl LegSizes {
     }
 
     /// Returns the smallest and largest values of the three joints \[m\]; `None` for a joint without limits.
-    pub(super) fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
+    pub(in crate::mechanism) fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
         let [second, third] = self.travels;
         let travels = [self.frame.rail_travel, second, third];
         [0, 1, 2].map(|joint| (self.chain.joints[joint] == JointKind::Prismatic).then_some(travels[joint]))
     }
 
     /// Returns the travels of the prismatic joints that the scene shows.
-    pub(super) fn shown_travels(&self, posture: &ChainPosture) -> Vec<Travel> {
+    pub(in crate::mechanism) fn shown_travels(&self, posture: &ChainPosture) -> Vec<Travel> {
         let (kind, [from, to]) = match self.chain.proximal {
             Some(MemberKind::Slider) => (TravelKind::Rail, self.frame.rail_ends()),
             Some(_) => return Vec::new(),
@@ -134,7 +132,7 @@ impl LegSizes {
     }
 
     /// Returns the lower and upper corner of an axis-aligned box that contains every point that the end of the leg can reach \[m\].
-    pub(super) fn reach_box(&self) -> [DVec2; 2] {
+    pub(in crate::mechanism) fn reach_box(&self) -> [DVec2; 2] {
         let of_proximal = match self.chain.proximal {
             Some(MemberKind::Crank) => self.proximal,
             Some(MemberKind::TurningGuide) => farthest(self.travels[0]),
@@ -154,12 +152,12 @@ impl LegSizes {
     }
 
     /// Returns the length of the guide at the base (0) or on the platform (1), or its farthest place from its origin if that is larger.
-    pub(super) fn longest_guide(&self, place: usize) -> f64 {
+    pub(in crate::mechanism) fn longest_guide(&self, place: usize) -> f64 {
         [self.proximal, self.link][place].max(farthest(self.travels[place]))
     }
 
     /// Returns what g1 compares: `reach + r_i` against what they have to bridge.
-    pub(super) fn assembly(&self, reach: f64, threshold: f64) -> Assembly {
+    pub(in crate::mechanism) fn assembly(&self, reach: f64, threshold: f64) -> Assembly {
         Assembly {
             value: reach + self.frame.arm_length,
             threshold,
@@ -167,7 +165,7 @@ impl LegSizes {
     }
 
     /// Returns the same for a leg on a rail, which has to bridge the distance of `O` from the line of the rail.
-    pub(super) fn assembly_from_rail(&self, reach: f64) -> Assembly {
+    pub(in crate::mechanism) fn assembly_from_rail(&self, reach: f64) -> Assembly {
         self.assembly(reach, cross(self.frame.rail, self.frame.anchor).abs())
     }
 }
