@@ -46,6 +46,11 @@ pub(in crate::mechanism) fn guide_bar(
     LegPart::GuideBar { from, to, kind }
 }
 
+/// Returns a carriage on a guide of a kind.
+pub(in crate::mechanism) fn carriage_on(on: MemberKind, at: DVec2, axis: DVec2, actuated: bool) -> LegPart {
+    LegPart::Carriage { at, axis, on, actuated }
+}
+
 /// Returns the slider at `B_i`, with a mark if it is driven.
 pub(in crate::mechanism) fn slider_body(
     leg: &LegSizes,
@@ -117,15 +122,7 @@ pub(super) fn leg_bodies(leg: &LegSizes, posture: &ChainPosture, values: [f64; 3
         origin: b,
         axis: -guide,
         joint: revolute(values[1], driven == 1),
-        parts: vec![
-            LegPart::Carriage {
-                at: b,
-                axis: guide,
-                on: kind,
-                actuated: driven == 2,
-            },
-            at_b,
-        ],
+        parts: vec![carriage_on(kind, b, guide, driven == 2), at_b],
     };
     vec![
         first,

@@ -6,11 +6,11 @@ use glam::DVec2;
 use super::{absolute, enclosed_within, margin_within_both};
 use crate::enclosure::{Interval, PlanarModel, TaylorModel};
 use crate::lanes::{Planar, Real};
-use crate::mechanism::chain::bodies::{guide_bar, pin, prismatic, slider_body};
+use crate::mechanism::chain::bodies::{carriage_on, guide_bar, pin, prismatic, slider_body};
 use crate::mechanism::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DesignVariable, JointKind,
-    JointPoint, LegBody, LegFrame, LegPart, LegSizes, LegToEnclose, LockedKind, LockedLeg, MemberKind, Shortfall,
-    Solved, Within,
+    JointPoint, LegBody, LegFrame, LegSizes, LegToEnclose, LockedKind, LockedLeg, MemberKind, Shortfall, Solved,
+    Within,
 };
 use crate::spatial::cross;
 
@@ -111,12 +111,7 @@ impl Chain for PprChain {
             axis: guide,
             joint: prismatic(values[1], travel, driven == 1),
             parts: vec![
-                LegPart::Carriage {
-                    at: c,
-                    axis: guide,
-                    on: MemberKind::Guide,
-                    actuated: driven == 1,
-                },
+                carriage_on(MemberKind::Guide, c, guide, driven == 1),
                 pin(c, driven == 2, [MemberKind::Guide, MemberKind::PlatformBar]),
             ],
         };

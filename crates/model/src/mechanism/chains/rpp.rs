@@ -6,12 +6,12 @@ use glam::DVec2;
 use super::{absolute, enclosed_within, margin_within_both, platform_guide, turned};
 use crate::enclosure::{Interval, MembersEnclosure, PlanarModel, TaylorModel, cross as cross_models};
 use crate::lanes::{Planar, Real};
-use crate::mechanism::chain::bodies::{guide_bar, pin, platform_guide_body, prismatic, revolute};
+use crate::mechanism::chain::bodies::{carriage_on, guide_bar, pin, platform_guide_body, prismatic, revolute};
 use crate::mechanism::chain::members::{enclosed_guide, guide_axis};
 use crate::mechanism::{
     Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DesignVariable,
-    DistalLanes, JointKind, JointPoint, LegBody, LegFrameEnclosure, LegPart, LegSizes, LegToEnclose, LockedKind,
-    LockedLeg, MemberKind, Members, ProximalEnclosure, ProximalLanes, Shortfall, Solved, Within,
+    DistalLanes, JointKind, JointPoint, LegBody, LegFrameEnclosure, LegSizes, LegToEnclose, LockedKind, LockedLeg,
+    MemberKind, Members, ProximalEnclosure, ProximalLanes, Shortfall, Solved, Within,
 };
 use crate::spatial::{Rotation, cross};
 
@@ -162,12 +162,6 @@ impl Chain for RppChain {
         let guide = -posture.distal.direction;
         let base_guide = base_guide_of(leg, guide);
         let kind = MemberKind::TurningGuide;
-        let carriage = |axis: DVec2, on: MemberKind, actuated: bool| LegPart::Carriage {
-            at: b,
-            axis,
-            on,
-            actuated,
-        };
         vec![
             LegBody {
                 name: "turning_guide",
@@ -187,8 +181,8 @@ impl Chain for RppChain {
                 axis: base_guide,
                 joint: prismatic(values[1], leg.travels[0], driven == 1),
                 parts: vec![
-                    carriage(base_guide, kind, driven == 1),
-                    carriage(guide, MemberKind::Guide, driven == 2),
+                    carriage_on(kind, b, base_guide, driven == 1),
+                    carriage_on(MemberKind::Guide, b, guide, driven == 2),
                 ],
             },
             platform_guide_body(leg, posture, values[2], driven == 2),
