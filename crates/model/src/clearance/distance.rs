@@ -37,6 +37,16 @@ fn to_segment<V: Real>([along, across]: [V; 2], length: V) -> V {
     beyond * beyond + across * across
 }
 
+/// Returns the distance between two upright prisms, given by how much they are apart in plan and in height; where they overlap in both, the
+/// result is negative.
+#[inline(always)]
+pub(super) fn between_prisms<V: Real>(across: V, along_z: V) -> V {
+    let zero = across.splat(0.0);
+    let (outside_x, outside_z) = (across.larger(zero), along_z.larger(zero));
+    let outside = (outside_x * outside_x + outside_z * outside_z).sqrt();
+    outside + across.larger(along_z).smaller(zero)
+}
+
 /// Returns whether the distance between two axes could be smaller than `distance`. The test compares the circles around
 /// the axes, which costs a fifth of [`squared`].
 #[inline(always)]

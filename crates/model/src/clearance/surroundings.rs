@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::capsule::Neighbour;
-use super::distance::{nearer, nearest_points, squared};
+use super::distance::{between_prisms, nearer, nearest_points, squared};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::MemberAxis;
 use crate::polygon::Polygon;
@@ -185,7 +185,6 @@ impl Barrier {
     #[inline(always)]
     pub fn clearance<V: Real>(&self, axis: &MemberAxis<V>, size: &BodySize) -> V {
         let like = axis.length;
-        let zero = like.splat(0.0);
         let mut nearest = like.splat(f64::INFINITY);
         for [from, to] in &self.edges {
             nearest = squared(axis, &edge(like, *from, *to)).smaller(nearest);
@@ -203,9 +202,7 @@ impl Barrier {
         let across = across - like.splat(of_prism);
         let beyond = if size.is_prism { size.beyond } else { 0.0 };
         let along_z = like.splat(self.gap_to_heights(size.heights) - beyond);
-        let (outside_x, outside_z) = (across.larger(zero), along_z.larger(zero));
-        let outside = (outside_x * outside_x + outside_z * outside_z).sqrt();
-        outside + across.larger(along_z).smaller(zero) - like.splat(of_bar)
+        between_prisms(across, along_z) - like.splat(of_bar)
     }
 
     /// Returns where a member may be nearer to the outline than `distance`.

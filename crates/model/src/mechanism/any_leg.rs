@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::chain::{Assembly, Chain as _, DistalLanes, LockedLeg};
-use super::{AnyLeg, Design, Leg, LegBody, LegFrame, LegLanes, LegPosture, LegSettings, Members, Shortfall, Travel};
+use super::chain::{Assembly, DistalLanes, LockedLeg};
+use super::{AnyLeg, Design, Leg, LegBody, LegLanes, LegPosture, LegSettings, LegSizes, Members, Shortfall, Travel};
 use crate::lanes::{LaneJob, Planar, Real};
 
 /// Inverse kinematics of a leg at several poses at once, as a function of its own.
@@ -59,12 +59,8 @@ impl Leg for AnyLeg {
         visit!(self, leg => c.x.call_apart(MembersJob { leg, c, distal: *distal }))
     }
 
-    fn frame(&self) -> &LegFrame {
-        visit!(self, leg => leg.frame())
-    }
-
-    fn reach_box(&self) -> [DVec2; 2] {
-        visit!(self, leg => leg.reach_box())
+    fn sizes(&self) -> &LegSizes {
+        visit!(self, leg => leg.sizes())
     }
 
     fn assembly(&self) -> Assembly {
@@ -84,26 +80,26 @@ impl AnyLeg {
 
     /// Returns what the leg requires of the platform while its actuated joint is locked at a value \[m or rad\].
     pub fn locked(&self, value: f64) -> LockedLeg {
-        visit!(self, leg => leg.chain.locked(leg.driven(), value))
+        visit!(self, leg => leg.locked(value))
     }
 
     /// Returns the values of the three joints from base to platform \[m or rad\], angles in (−π, π].
     pub fn joint_values(&self, posture: &LegPosture) -> [f64; 3] {
-        visit!(self, leg => leg.chain.joint_values(&posture.chain, posture.arm))
+        self.sizes().joint_values(&posture.chain, posture.arm)
     }
 
     /// Returns the smallest and largest values of the joints that have limits \[m\].
     pub fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
-        visit!(self, leg => leg.chain.joint_limits())
+        self.sizes().joint_limits()
     }
 
     /// Returns the rigid bodies of the leg, from the base to the platform.
     pub fn bodies(&self, posture: &LegPosture) -> Vec<LegBody> {
-        visit!(self, leg => leg.chain.bodies(&posture.chain, posture.arm, leg.driven()))
+        visit!(self, leg => leg.bodies(&posture.chain, self.joint_values(posture)))
     }
 
     /// Returns the travels of the prismatic joints that the scene shows.
     pub fn travels(&self, posture: &LegPosture) -> Vec<Travel> {
-        visit!(self, leg => leg.chain.travels(&posture.chain))
+        self.sizes().shown_travels(&posture.chain)
     }
 }

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
+use super::MemberKind;
 use super::joint::JointKind;
-use super::{LegFrame, MemberKind};
 
 /// Geometric part or joint of a leg, in the base frame \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,18 +117,6 @@ pub struct Travel {
     pub from: DVec2,
     /// Position at the upper limit.
     pub to: DVec2,
-}
-
-impl Travel {
-    /// Returns the travel of a slider.
-    pub(super) fn of_rail(frame: &LegFrame) -> Self {
-        let [from, to] = frame.rail_ends();
-        Self {
-            kind: TravelKind::Rail,
-            from,
-            to,
-        }
-    }
 }
 
 /// What a prismatic joint moves along.

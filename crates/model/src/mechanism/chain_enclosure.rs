@@ -1,6 +1,6 @@
 //! Enclosures of what a chain is over a box of poses.
 
-use super::{Design, DesignVariable, Geometry};
+use super::{Design, DesignVariable, Geometry, LegSettings};
 use crate::enclosure::{Interval, PlanarModel, PoseEnclosure, TaylorModel, TurnedFrame};
 use crate::spatial::LEGS;
 
@@ -114,6 +114,17 @@ impl LegFrameEnclosure {
     }
 }
 
+/// A leg that is enclosed over boxes of poses.
+#[derive(Debug, Clone, Copy)]
+pub struct LegToEnclose<'a> {
+    /// The place of the leg in the manipulator.
+    pub frame: &'a LegFrameEnclosure,
+    /// The design.
+    pub design: &'a Design,
+    /// The settings of the legs.
+    pub settings: &'a LegSettings,
+}
+
 /// Largest number of functions that tell whether a chain reaches a pose.
 pub const REACH_FORMS: usize = 4;
 
@@ -151,4 +162,26 @@ pub struct ChainEnclosure {
     pub guides: [Option<PlanarModel>; 3],
     /// Square of the lever of the first joint about the line of the distal bar, where it has a narrower form than the general one.
     pub lever_square: Option<TaylorModel>,
+}
+
+impl ChainEnclosure {
+    /// Creates a chain without slider and without a bar from `A_i` to `B_i`; `beam` is the length of the distal bar in the beam model.
+    pub(super) fn new(
+        reach: [TaylorModel; REACH_FORMS],
+        tangent: PlanarModel,
+        [offset, beam]: [TaylorModel; 2],
+        guides: [Option<PlanarModel>; 3],
+    ) -> Self {
+        Self {
+            reach,
+            tangent,
+            offset,
+            beam,
+            signed_beam: offset,
+            slider: None,
+            proximal: None,
+            guides,
+            lever_square: None,
+        }
+    }
 }

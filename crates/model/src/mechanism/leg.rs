@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::chain::{Assembly, ChainLanes, ChainPosture, DistalLanes};
-use super::{Design, LegFrame, LegSettings, Members, Shortfall};
+use super::{Design, LegFrame, LegSettings, LegSizes, Members, Shortfall};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{LEGS, Pose, Rotation};
 
@@ -31,6 +31,15 @@ pub struct BarLoads<V> {
     pub force: V,
     /// Moments about the proximal and the distal end of the bar \[m\].
     pub moments: [V; 2],
+}
+
+impl<V: Real> BarLoads<V> {
+    /// Creates the loads from the component of the force and the two moments.
+    #[inline(always)]
+    pub(super) fn new([force, proximal, distal]: [V; 3]) -> Self {
+        let moments = [proximal, distal];
+        Self { force, moments }
+    }
 }
 
 /// Loads of the bars of a leg whose line is not that of its distal bar.
@@ -93,12 +102,20 @@ pub trait Leg: Copy + Send + Sync {
     /// Returns the axes of the leg's members at several poses at once, with the end of the leg at `c`.
     fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V>;
 
+    /// Returns the constants of the leg.
+    fn sizes(&self) -> &LegSizes;
+
     /// Returns the place of the leg in the manipulator.
-    fn frame(&self) -> &LegFrame;
+    #[inline(always)]
+    fn frame(&self) -> &LegFrame {
+        &self.sizes().frame
+    }
 
     /// Returns the lower and upper corner of an axis-aligned box that contains every point that the end of the leg can
     /// reach \[m\].
-    fn reach_box(&self) -> [DVec2; 2];
+    fn reach_box(&self) -> [DVec2; 2] {
+        self.sizes().reach_box()
+    }
 
     /// Returns what g1 compares.
     fn assembly(&self) -> Assembly;

@@ -10,6 +10,7 @@ mod chain;
 mod chain_enclosure;
 mod chains;
 mod design;
+mod design_variable;
 mod driven_leg;
 mod geometry;
 mod joint;
@@ -23,11 +24,12 @@ mod text;
 
 pub use body::{LegBody, LegJoint, LegPart, Travel, TravelKind};
 pub use chain::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainLanes, ChainPosture, DistalLanes, LockedKind, LockedLeg,
-    ProximalLanes, Solved,
+    Assembly, BarPosture, Chain, ChainDescription, ChainLanes, ChainPosture, DistalLanes, LegSizes, LockedKind,
+    LockedLeg, ProximalLanes, Solved,
 };
-pub use chain_enclosure::{ChainEnclosure, LegFrameEnclosure, ProximalEnclosure, REACH_FORMS};
-pub use design::{DESIGN_VARIABLES, Design, DesignError, DesignVariable, FURTHER_VARIABLES, WorkingMode};
+pub use chain_enclosure::{ChainEnclosure, LegFrameEnclosure, LegToEnclose, ProximalEnclosure, REACH_FORMS};
+pub use design::{Design, DesignError, WorkingMode};
+pub use design_variable::{DESIGN_VARIABLES, DesignVariable, FURTHER_VARIABLES};
 pub use driven_leg::DrivenLeg;
 pub use geometry::{Arrangement, Geometry, LegFrame};
 pub use joint::{CylinderSize, JointKind, JointMasses, JointPart, JointPoint, JointSizes};
@@ -36,7 +38,7 @@ pub use leg_enclosure::{EnclosedLoads, LegEnclosure};
 pub use member::{MemberAxis, MemberKind, Members};
 pub use section::{Catalogue, CatalogueEntry, CatalogueError, CrossSection, CrossSections, Wall};
 pub use settings::{BarLength, LegSettings};
-pub use shortfall::{ReachReason, Shortfall};
+pub use shortfall::{ReachReason, Shortfall, Within};
 pub use text::TextError;
 
 use crate::enclosure::{MembersEnclosure, PlanarModel, PoseEnclosure};
@@ -123,11 +125,10 @@ macro_rules! architectures {
                 settings: &LegSettings,
                 pose: &PoseEnclosure,
             ) -> LegEnclosure {
+                let leg = LegToEnclose { frame, design, settings };
                 match design.architecture() {
-                    $(Architecture::$fast =>
-                        DrivenLeg::<$fast_chain, $fast_driven>::enclose(frame, design, settings, pose),)+
-                    $(Architecture::$variant =>
-                        DrivenLeg::<$chain, $driven>::enclose(frame, design, settings, pose),)+
+                    $(Architecture::$fast => DrivenLeg::<$fast_chain, $fast_driven>::enclose(&leg, pose),)+
+                    $(Architecture::$variant => DrivenLeg::<$chain, $driven>::enclose(&leg, pose),)+
                 }
             }
 
@@ -141,12 +142,10 @@ macro_rules! architectures {
                 anchor: PlanarModel,
                 tip: PlanarModel,
             ) -> MembersEnclosure {
-                let chain = &leg.chain;
+                let (chain, leg) = (&leg.chain, LegToEnclose { frame, design, settings });
                 match design.architecture() {
-                    $(Architecture::$fast =>
-                        $fast_chain::enclose_members(frame, design, settings, chain, anchor, tip),)+
-                    $(Architecture::$variant =>
-                        $chain::enclose_members(frame, design, settings, chain, anchor, tip),)+
+                    $(Architecture::$fast => $fast_chain::enclose_members(&leg, chain, anchor, tip),)+
+                    $(Architecture::$variant => $chain::enclose_members(&leg, chain, anchor, tip),)+
                 }
             }
         }

@@ -25,15 +25,18 @@ impl OrientationLanes<'_> {
     #[inline(always)]
     pub(super) fn lanes<S: Simd>(&self, simd: S) -> ([Planar<Lanes<S>>; LEGS], Lanes<S>) {
         let sign = Lanes::all(simd, self.sign);
-        (
-            [
-                Planar::splat(sign, self.arms[0]),
-                Planar::splat(sign, self.arms[1]),
-                Planar::splat(sign, self.arms[2]),
-            ],
-            sign,
-        )
+        (splat_arms(sign, self.arms), sign)
     }
+}
+
+/// Returns the arms in as many lanes as `like` has.
+#[inline(always)]
+pub(super) fn splat_arms<V: Real>(like: V, arms: &[DVec2; LEGS]) -> [Planar<V>; LEGS] {
+    [
+        Planar::splat(like, arms[0]),
+        Planar::splat(like, arms[1]),
+        Planar::splat(like, arms[2]),
+    ]
 }
 
 /// Determines which poses are feasible. The result is the number of poses before the first infeasible one, or `count` if all are
@@ -160,11 +163,7 @@ impl<L: Leg> WithSimd for Worst<'_, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let zero = Lanes::all(simd, 0.0);
-        let arms = [
-            Planar::splat(zero, self.arms[0]),
-            Planar::splat(zero, self.arms[1]),
-            Planar::splat(zero, self.arms[2]),
-        ];
+        let arms = splat_arms(zero, self.arms);
         let mut least = [zero.splat(f64::INFINITY); PoseScalar::COUNT];
         let mut least_index = [zero; PoseScalar::COUNT];
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));

@@ -3,6 +3,7 @@
 use glam::DVec2;
 use pulp::{Simd, WithSimd};
 
+use super::batch::splat_arms;
 use crate::lanes::{Lanes, MAX_LANES, Planar, Real, padded_length};
 use crate::mechanism::Leg;
 use crate::pose::{
@@ -37,6 +38,18 @@ impl Positions {
     pub fn extend(&mut self, positions: &[DVec2]) {
         self.xs.extend(positions.iter().map(|position| position.x));
         self.ys.extend(positions.iter().map(|position| position.y));
+    }
+
+    /// Replaces the positions by others, with the padding.
+    pub fn lay(&mut self, positions: &[DVec2]) {
+        self.clear();
+        self.extend(positions);
+        self.pad();
+    }
+
+    /// Returns both columns.
+    pub fn columns(&self) -> (&[f64], &[f64]) {
+        (&self.xs, &self.ys)
     }
 
     pub fn truncate(&mut self, count: usize) {
@@ -273,10 +286,7 @@ impl<L: Leg> WithSimd for AtPoses<'_, L> {
         let (xs, ys) = (Lanes::<S>::column(self.xs), Lanes::<S>::column(self.ys));
         let zero = Lanes::all(simd, 0.0);
         let (mut arms, columns) = match self.arms {
-            PoseArms::Same(&[first, second, third]) => {
-                let all = |arm| Planar::splat(zero, arm);
-                ([all(first), all(second), all(third)], None)
-            }
+            PoseArms::Same(arms) => (splat_arms(zero, arms), None),
             PoseArms::Columns(ArmColumns([x0, y0, x1, y1, x2, y2])) => {
                 let pair = |x, y| (Lanes::<S>::column(x), Lanes::<S>::column(y));
                 (

@@ -76,29 +76,9 @@ fn least_lane<S: Simd>(numbers: Lanes<S>) -> f64 {
 }
 
 impl<L: Leg> PoseChecker<L> {
-    /// Returns what many positions in one orientation show, in the columns of equal lengths, a multiple of [`MAX_LANES`]; `kept` are the
-    /// scalars whose worst values are returned.
-    pub(super) fn worst_margin(
-        &self,
-        oriented: OrientationLanes<'_>,
-        columns: (&[f64], &[f64]),
-        base_radius: f64,
-        kept: ScalarSet,
-    ) -> Examined {
-        self.worst_margin_of::<false>(oriented, columns, base_radius, kept)
-    }
-
-    /// Returns the same of the limits that take long alone.
-    pub(super) fn worst_slow_margin(
-        &self,
-        oriented: OrientationLanes<'_>,
-        columns: (&[f64], &[f64]),
-        base_radius: f64,
-    ) -> Examined {
-        self.worst_margin_of::<true>(oriented, columns, base_radius, self.slow_limits())
-    }
-
-    fn worst_margin_of<const SLOW: bool>(
+    /// Returns what many positions in one orientation show, in the columns of equal lengths, a multiple of [`MAX_LANES`], of all limits or
+    /// of those that take long alone; `kept` are the scalars whose worst values are returned, which then are those of these limits.
+    pub(super) fn worst_margin<const SLOW: bool>(
         &self,
         oriented: OrientationLanes<'_>,
         (xs, ys): (&[f64], &[f64]),
@@ -133,8 +113,7 @@ impl<L: Leg> PoseChecker<L> {
         self.fill_on_demand(slow, position, arms, &mut scalars);
         let mut worst = like.splat(f64::INFINITY);
         for scalar in slow.iter() {
-            let threshold = self.thresholds.bound(scalar);
-            let margin = limit_margin(scalar, scalars[scalar], threshold, per_length);
+            let margin = limit_margin(scalar, scalars[scalar], self.thresholds.bound(scalar), per_length);
             worst = worst.smaller(margin.larger(none));
             keep_least(least_kept, scalar, scalars[scalar]);
         }

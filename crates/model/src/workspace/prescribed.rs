@@ -144,9 +144,7 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         };
         let parts = self.samples.all.split_at(self.samples.first);
         for (columns, positions) in self.parts.iter_mut().zip([parts.0, parts.1]) {
-            columns.clear();
-            columns.extend(positions);
-            columns.pad();
+            columns.lay(positions);
         }
     }
 
@@ -155,9 +153,7 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         let (spec, grid, step) = self.grid();
         let region = spec.region.scaled(factor);
         let boundary = region.boundary_positions(spec.centre * factor, grid, step, &self.directions);
-        self.parts[0].clear();
-        self.parts[0].extend(&boundary);
-        self.parts[0].pad();
+        self.parts[0].lay(&boundary);
     }
 
     fn grid(&self) -> (&'a WorkspaceSpec, &'a Grid, f64) {
@@ -184,18 +180,32 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
 
     /// Returns the worst margin in one orientation over the positions that are examined first.
     pub fn at_first(&self, orientation: usize) -> f64 {
-        self.at(orientation, &self.parts[0]).margin
+        let columns = self.parts[0].columns();
+        self.checker
+            .worst_margin::<false>(self.oriented(orientation), columns, self.step_base, self.kept)
+            .margin
     }
 
-    /// Returns what a stage shows in one orientation.
+    /// Returns what a stage shows in one orientation. What one shows of the limits that take long alone means nothing where a leg does
+    /// not reach one of its positions, of which the other limits tell.
     fn examine(&self, orientation: usize, stage: Stage) -> Examined {
         let [first, others] = &self.parts;
-        match stage {
-            Stage::First => self.quick_at(orientation, first),
-            Stage::Others => self.quick_at(orientation, others),
-            Stage::SlowAtFirst => self.slow_at(orientation, first),
-            Stage::SlowAtOthers => self.slow_at(orientation, others),
+        let (takes_long, positions) = match stage {
+            Stage::First => (false, first),
+            Stage::Others => (false, others),
+            Stage::SlowAtFirst => (true, first),
+            Stage::SlowAtOthers => (true, others),
+        };
+        let (oriented, columns) = (self.oriented(orientation), positions.columns());
+        let slow = self.checker.slow_limits();
+        if takes_long {
+            return self
+                .checker
+                .worst_margin::<true>(oriented, columns, self.step_base, slow);
         }
+        let checker = self.quick.as_ref().unwrap_or(&self.checker);
+        let kept = self.kept.iter().filter(|scalar| !slow.contains(*scalar)).collect();
+        checker.worst_margin::<false>(oriented, columns, self.step_base, kept)
     }
 
     /// Returns the stages that show everything, in their order. An objective that takes long is bounded early.
@@ -212,23 +222,6 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         }
     }
 
-    /// Returns what some positions show without the limits that take long.
-    fn quick_at(&self, orientation: usize, positions: &Positions) -> Examined {
-        let checker = self.quick.as_ref().unwrap_or(&self.checker);
-        let slow = self.checker.slow_limits();
-        let kept = self.kept.iter().filter(|scalar| !slow.contains(*scalar)).collect();
-        let columns = (&positions.xs[..], &positions.ys[..]);
-        checker.worst_margin(self.oriented(orientation), columns, self.step_base, kept)
-    }
-
-    /// Returns what some positions show of the limits that take long alone; it means nothing where a leg does not reach one of them,
-    /// of which the other limits tell.
-    fn slow_at(&self, orientation: usize, positions: &Positions) -> Examined {
-        let columns = (&positions.xs[..], &positions.ys[..]);
-        self.checker
-            .worst_slow_margin(self.oriented(orientation), columns, self.step_base)
-    }
-
     /// Returns whether no position that is not examined first has a negative margin in one orientation.
     pub fn holds_at_others(&self, orientation: usize) -> bool {
         /// Number of positions after which the margins so far are looked at.
@@ -237,8 +230,23 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
         let [_, others] = &self.parts;
         let parts = others.xs.chunks(PART).zip(others.ys.chunks(PART));
         parts
-            .map(|columns| self.checker.worst_margin(oriented, columns, self.step_base, self.kept))
+            .map(|columns| {
+                self.checker
+                    .worst_margin::<false>(oriented, columns, self.step_base, self.kept)
+            })
             .all(|found| found.margin >= 0.0)
+    }
+
+    /// Returns the standing of the window about a home orientation, given those of all orientations.
+    fn of_window(&self, home: usize, standings: &[Standing]) -> Standing {
+        let window = self.sampling.orientation_grid().window(home);
+        window.fold(Standing::BEST, |least, k| {
+            let mut least = least.and(standings[k]);
+            if self.signs[k] != self.signs[home] {
+                least.margin = least.margin.min(CUT);
+            }
+            least
+        })
     }
 
     fn oriented(&self, orientation: usize) -> OrientationLanes<'_> {
@@ -246,12 +254,6 @@ impl<'a, L: Leg> RegionMargins<'a, L> {
             arms: &self.orientations[orientation].arms,
             sign: self.signs[orientation],
         }
-    }
-
-    fn at(&self, orientation: usize, positions: &Positions) -> Examined {
-        let columns = (&positions.xs[..], &positions.ys[..]);
-        self.checker
-            .worst_margin(self.oriented(orientation), columns, self.step_base, self.kept)
     }
 }
 
@@ -272,9 +274,8 @@ pub fn search_prescribed<L: Leg>(
     let (spec, orientation_grid) = (sampling.spec(), *sampling.orientation_grid());
     let mut margins = RegionMargins::new(checker.clone(), sampling, step_base, symmetric);
     margins.kept = objective.into_iter().fold(margins.kept, ScalarSet::with);
-    let signs = &margins.signs;
     let standing_of = |found: &Examined| Standing::new(found, objective);
-    let all: Vec<usize> = (0..signs.len()).collect();
+    let all: Vec<usize> = (0..margins.signs.len()).collect();
     let mut worst = map(workers, &all, |k| standing_of(&margins.examine(*k, Stage::First)));
     let stages = margins.stages(objective);
     let mut examined = vec![1; worst.len()];
@@ -282,26 +283,10 @@ pub fn search_prescribed<L: Leg>(
         Some(_) => vec![PoseScalars::splat(f64::INFINITY); worst.len()],
         None => Vec::new(),
     };
-    let of_window = |home: usize, worst: &[Standing]| {
-        let mut least = Standing::BEST;
-        for k in orientation_grid.window(home) {
-            least = least.and(worst[k]);
-            if signs[k] != signs[home] {
-                least.margin = least.margin.min(CUT);
-            }
-        }
-        least
-    };
     let homes = orientation_grid.homes();
-    let mut bounds: Vec<Standing> = homes.clone().map(|home| of_window(home, &worst)).collect();
+    let mut bounds: Vec<Standing> = homes.clone().map(|home| margins.of_window(home, &worst)).collect();
     let (home, margin) = loop {
-        let leader = bounds.iter().enumerate().fold(0, |best, (place, bound)| {
-            if bound.is_better_than(bounds[best]) {
-                place
-            } else {
-                best
-            }
-        });
+        let leader = leader(&bounds);
         let home = homes.start + leader;
         // Within a window, a stage begins when those before it have ended: they may show that another window is better.
         let stage = orientation_grid.window(home).map(|k| examined[k]).min();
@@ -328,7 +313,7 @@ pub fn search_prescribed<L: Leg>(
     let found = RegularWorkspace {
         radius: spec.region.inscribed_radius().unwrap_or(0.0),
         home: Some(home),
-        home_sign: signs[home],
+        home_sign: margins.signs[home],
         orientations: margins.orientations,
         orientation_grid,
         limits: Vec::new(),
@@ -338,6 +323,14 @@ pub fn search_prescribed<L: Leg>(
         slow,
     };
     (found, margin)
+}
+
+/// Returns the place of the best of some bounds, the first one among equals.
+fn leader(bounds: &[Standing]) -> usize {
+    (0..bounds.len()).fold(0, |best, place| {
+        let is_better = bounds[place].is_better_than(bounds[best]);
+        if is_better { place } else { best }
+    })
 }
 
 /// Returns the sign of `det A` in each orientation; that of an unreachable pose is positive, which makes no difference.

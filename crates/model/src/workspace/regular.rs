@@ -12,7 +12,7 @@ use glam::DVec2;
 
 use super::batch::OrientationLanes;
 use super::region::directions;
-use super::rings::{Reach, Rings};
+use super::rings::{InOrientation, Reach, Rings};
 use super::{ArmColumns, Grid, OrientationGrid, ValueColumns, WorkspaceSampling};
 use crate::mechanism::Leg;
 use crate::pose::{PoseChecker, PoseScalar, PoseScalars};
@@ -193,23 +193,21 @@ impl<L: Leg> Search<'_, L> {
             order,
             found,
         } = self;
-        let oriented = |k: usize| OrientationLanes {
-            arms: &found.orientations[k].arms,
-            // The centres of a leading window are feasible and have one sign.
-            sign: found.orientations[k].centre_sign.unwrap_or(1.0),
+        let at = |k: usize| InOrientation {
+            checker,
+            oriented: OrientationLanes {
+                arms: &found.orientations[k].arms,
+                // The centres of a leading window are feasible and have one sign.
+                sign: found.orientations[k].centre_sign.unwrap_or(1.0),
+            },
         };
         let last = window.iter().map(|&k| reaches[k].failing).min().unwrap_or(usize::MAX);
         for &offset in order.iter() {
             let k = window[offset];
             let reach = &mut reaches[k];
             if reach.failing > last && reach.good.max(reach.probed) < last || last == usize::MAX {
-                rings.estimate(
-                    checker,
-                    oriented(k),
-                    reach,
-                    if last == usize::MAX { *hint } else { last },
-                    last,
-                );
+                let start = if last == usize::MAX { *hint } else { last };
+                rings.estimate(at(k), reach, start, last);
                 if reach.failing <= last {
                     *hint = reach.failing;
                     return Some(k);
@@ -220,7 +218,7 @@ impl<L: Leg> Search<'_, L> {
             let k = window[offset];
             let reach = &mut reaches[k];
             let known = reach.failing;
-            rings.march(checker, oriented(k), reach, last.min(known - 1));
+            rings.march(at(k), reach, last.min(known - 1));
             if reach.failing < known {
                 return Some(k);
             }
@@ -228,7 +226,7 @@ impl<L: Leg> Search<'_, L> {
         let k = *window
             .iter()
             .find(|&&k| reaches[k].failing == last && reaches[k].bracket.is_none())?;
-        rings.halve(checker, oriented(k), &mut reaches[k], grid);
+        rings.halve(at(k), &mut reaches[k], grid);
         Some(k)
     }
 }

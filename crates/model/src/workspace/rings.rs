@@ -13,6 +13,15 @@ use super::{Grid, Positions};
 use crate::mechanism::Leg;
 use crate::pose::PoseChecker;
 
+/// A design in one orientation.
+#[derive(Clone, Copy)]
+pub(super) struct InOrientation<'a, L> {
+    /// Tells which poses are feasible.
+    pub checker: &'a PoseChecker<L>,
+    /// The orientation.
+    pub oriented: OrientationLanes<'a>,
+}
+
 /// Directions and step of all rays, with a buffer for the positions of a few rings.
 #[derive(Debug)]
 pub(super) struct Rings {
@@ -78,13 +87,7 @@ impl Rings {
 
     /// Returns the number of poses of rings `first` to `last`, counted ring after ring, before the first infeasible
     /// one.
-    fn count_leading_feasible<L: Leg>(
-        &mut self,
-        checker: &PoseChecker<L>,
-        oriented: OrientationLanes<'_>,
-        first: usize,
-        last: usize,
-    ) -> usize {
+    fn count_leading_feasible<L: Leg>(&mut self, at: InOrientation<'_, L>, first: usize, last: usize) -> usize {
         self.positions.clear();
         for ring in first..=last {
             let radius = ring as f64 * self.step;
@@ -94,18 +97,13 @@ impl Rings {
         }
         let count = self.positions.xs.len();
         self.positions.pad();
-        checker.count_leading_feasible(oriented, &self.positions.xs, &self.positions.ys, count)
+        at.checker
+            .count_leading_feasible(at.oriented, &self.positions.xs, &self.positions.ys, count)
     }
 
     /// Returns whether one ring is feasible, and records the result in `reach`.
-    fn probe<L: Leg>(
-        &mut self,
-        checker: &PoseChecker<L>,
-        oriented: OrientationLanes<'_>,
-        reach: &mut Reach,
-        ring: usize,
-    ) -> bool {
-        let good = self.count_leading_feasible(checker, oriented, ring, ring) == self.directions.len();
+    fn probe<L: Leg>(&mut self, at: InOrientation<'_, L>, reach: &mut Reach, ring: usize) -> bool {
+        let good = self.count_leading_feasible(at, ring, ring) == self.directions.len();
         if good {
             reach.probed = reach.probed.max(ring);
             if ring == reach.good + 1 {
@@ -120,17 +118,10 @@ impl Rings {
     /// Searches for the failing ring that is nearest to the centre, as far as bisection can find it. The search starts
     /// at `hint`, a ring likely to fail, and goes outwards to `farthest` at most. It is meant for an orientation
     /// without a known failing ring up to `farthest`.
-    pub fn estimate<L: Leg>(
-        &mut self,
-        checker: &PoseChecker<L>,
-        oriented: OrientationLanes<'_>,
-        reach: &mut Reach,
-        hint: usize,
-        farthest: usize,
-    ) {
+    pub fn estimate<L: Leg>(&mut self, at: InOrientation<'_, L>, reach: &mut Reach, hint: usize, farthest: usize) {
         // Step outwards until a ring fails. The loop ends because the reach of every leg is bounded.
         let mut ring = hint.clamp(1, farthest);
-        while self.probe(checker, oriented, reach, ring) {
+        while self.probe(at, reach, ring) {
             if ring == farthest {
                 return;
             }
@@ -141,7 +132,7 @@ impl Rings {
         let mut stride = 1;
         while reach.failing > good + 2 * stride {
             let ring = reach.failing - stride;
-            if self.probe(checker, oriented, reach, ring) {
+            if self.probe(at, reach, ring) {
                 good = ring;
                 break;
             }
@@ -149,25 +140,19 @@ impl Rings {
         }
         while reach.failing > good + 1 {
             let ring = usize::midpoint(good, reach.failing);
-            if self.probe(checker, oriented, reach, ring) {
+            if self.probe(at, reach, ring) {
                 good = ring;
             }
         }
     }
 
     /// Marches outwards from ring `reach.good` to ring `last`, or to the first ring that fails.
-    pub fn march<L: Leg>(
-        &mut self,
-        checker: &PoseChecker<L>,
-        oriented: OrientationLanes<'_>,
-        reach: &mut Reach,
-        last: usize,
-    ) {
+    pub fn march<L: Leg>(&mut self, at: InOrientation<'_, L>, reach: &mut Reach, last: usize) {
         let count = self.directions.len();
         while reach.good < last {
             let first = reach.good + 1;
             let end = (first + BLOCK / count).min(last);
-            let count_leading_feasible = self.count_leading_feasible(checker, oriented, first, end);
+            let count_leading_feasible = self.count_leading_feasible(at, first, end);
             reach.good += count_leading_feasible / count;
             if reach.good < end {
                 reach.failing = reach.failing.min(reach.good + 1);
@@ -183,16 +168,10 @@ impl Rings {
     /// once; the smallest radius over the directions is the same as if every ray were marched to its own end. Each
     /// halving depends on the one before. Where few directions are left, all midpoints that the next halvings could
     /// need are therefore evaluated together.
-    pub fn halve<L: Leg>(
-        &mut self,
-        checker: &PoseChecker<L>,
-        oriented: OrientationLanes<'_>,
-        reach: &mut Reach,
-        grid: &Grid,
-    ) {
+    pub fn halve<L: Leg>(&mut self, at: InOrientation<'_, L>, reach: &mut Reach, grid: &Grid) {
         let mut bracket = [(reach.failing - 1) as f64 * self.step, reach.failing as f64 * self.step];
         let mut middles = Middles::new(&self.directions);
-        middles.look(checker, oriented, self.centre, &[bracket[1]]);
+        middles.look(at, self.centre, &[bracket[1]]);
         middles.keep_failing(0);
         let mut left = grid.halvings() as usize;
         while left > 0 {
@@ -213,7 +192,7 @@ impl Rings {
                     brackets[2 * k + 1] = [radii[k], far];
                 }
             }
-            middles.look(checker, oriented, self.centre, &radii[1..1 << depth]);
+            middles.look(at, self.centre, &radii[1..1 << depth]);
             let mut k = 1;
             for _ in 0..depth {
                 if middles.keep_failing(k - 1) {
@@ -257,7 +236,7 @@ impl Middles {
     }
 
     /// Evaluates the poses of the failing directions at all `radii`.
-    fn look<L: Leg>(&mut self, checker: &PoseChecker<L>, oriented: OrientationLanes<'_>, centre: DVec2, radii: &[f64]) {
+    fn look<L: Leg>(&mut self, at: InOrientation<'_, L>, centre: DVec2, radii: &[f64]) {
         self.directions = self.failing.iter().map(|&index| self.directions[index]).collect();
         self.failing = (0..self.directions.len()).collect();
         self.positions.clear();
@@ -268,7 +247,8 @@ impl Middles {
         }
         self.positions.pad();
         self.good.resize(self.positions.xs.len(), 0.0);
-        checker.mark_feasible(oriented, &self.positions.xs, &self.positions.ys, &mut self.good);
+        at.checker
+            .mark_feasible(at.oriented, &self.positions.xs, &self.positions.ys, &mut self.good);
     }
 
     /// Returns whether any direction fails at the radius of index `radius`; if so, drops the directions that do not

@@ -3,29 +3,20 @@
 
 use glam::DVec2;
 
-use super::{
-    Within, absolute, angle_of, assembly_from_rail, box_about, enclosed_guide, enclosed_members_on_slider,
-    enclosed_within, farthest, guide_axis, guide_ends, margin_within, members_on_slider, or_far_off, pin, prismatic,
-    slider_body, wrapped,
-};
-use crate::enclosure::{Interval, MembersEnclosure, PlanarModel, TaylorModel, difference};
+use super::{absolute, enclosed_within, margin_within_both};
+use crate::enclosure::{Interval, PlanarModel, TaylorModel};
 use crate::lanes::{Planar, Real};
+use crate::mechanism::chain::bodies::{carriage_on, guide_bar, pin, prismatic, slider_body};
 use crate::mechanism::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, Design, DesignVariable,
-    DistalLanes, JointKind, JointPoint, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, LockedKind,
-    LockedLeg, MemberKind, Members, Shortfall, Solved, Travel,
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DesignVariable, JointKind,
+    JointPoint, LegBody, LegFrame, LegSizes, LegToEnclose, LockedKind, LockedLeg, MemberKind, Shortfall, Solved,
+    Within,
 };
-use crate::spatial::{Rotation, cross};
+use crate::spatial::cross;
 
 /// Chain of a leg with a slider that carries a guide.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PprChain {
-    frame: LegFrame,
-    /// `e'_i`, the direction of the guide on the slider.
-    guide: DVec2,
-    length: f64,
-    travel: [f64; 2],
-}
+pub struct PprChain;
 
 impl Chain for PprChain {
     const DESCRIPTION: ChainDescription = ChainDescription {
@@ -39,193 +30,95 @@ impl Chain for PprChain {
         variables: &[DesignVariable::RailAngle, DesignVariable::GuideAngle],
     };
 
-    fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self {
-        Self {
-            guide: Rotation::by(frame.between_guides).apply(frame.rail),
-            frame,
-            length: design.link_length(),
-            travel: settings.geometry.travel(design.link_length()),
-        }
-    }
-
-    fn frame(&self) -> &LegFrame {
-        &self.frame
-    }
-
-    fn solve(&self, c: DVec2, _: DVec2) -> Result<Solved, Shortfall> {
-        let LegFrame { anchor, rail, .. } = self.frame;
-        let sine = self.frame.between_guides.y;
+    fn solve(leg: &LegSizes, c: DVec2, _: DVec2) -> Result<Solved, Shortfall> {
+        let LegFrame { anchor, rail, .. } = leg.frame;
+        let guide = leg.slider_guide;
+        let sine = leg.frame.between_guides.y;
         let chord = c - anchor;
-        let (first, second) = (cross(chord, self.guide) / sine, cross(rail, chord) / sine);
-        let within = Within::limits(first, self.frame.rail_travel).and(Within::limits(second, self.travel));
-        let b = anchor + rail * first;
-        let posture = ChainPosture {
-            a: anchor,
-            b,
-            c,
-            slider: Some(self.frame.from_rail_ends(b.into())),
+        let (first, second) = (cross(chord, guide) / sine, cross(rail, chord) / sine);
+        Ok(Solved {
+            b: anchor + rail * first,
             proximal: None,
-            distal: BarPosture {
-                direction: self.guide,
-                offset: second,
-            },
-            beam: second.abs(),
-            guides: [Some(rail), Some(self.guide), None],
-            limit_margin: within.margin,
-        };
-        Ok((posture, within.beyond))
+            distal: BarPosture::new(guide, second),
+            guides: [Some(rail), Some(guide), None],
+            within: Within::limits(first, leg.frame.rail_travel).and(Within::limits(second, leg.travels[0])),
+        })
     }
 
-    fn locked(&self, driven: usize, value: f64) -> LockedLeg {
-        let LegFrame {
-            anchor,
-            rail,
-            platform_joint,
-            ..
-        } = self.frame;
+    fn locked(leg: &LegSizes, driven: usize, value: f64) -> LockedLeg {
+        let LegFrame { anchor, rail, .. } = leg.frame;
         let (base, normal) = match driven {
-            0 => (anchor + rail * value, self.guide.perp()),
-            _ => (anchor + self.guide * value, rail.perp()),
+            0 => (anchor + rail * value, leg.slider_guide.perp()),
+            _ => (anchor + leg.slider_guide * value, rail.perp()),
         };
-        LockedLeg {
-            platform: platform_joint,
-            base,
-            kind: LockedKind::BaseLine(normal),
-        }
+        LockedLeg::new(leg.frame.platform_joint, base, LockedKind::BaseLine(normal))
     }
 
     #[inline(always)]
-    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V> {
+    fn lanes<V: Real>(leg: &LegSizes, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V> {
         let like = position.x;
         let (zero, one) = (like.splat(0.0), like.splat(1.0));
-        let rail = Planar::splat(like, self.frame.rail);
-        let tangent = Planar::splat(like, self.guide);
-        let chord = position.plus(arm.minus(Planar::splat(like, self.frame.anchor)));
-        let per_sine = like.splat(1.0 / self.frame.between_guides.y);
+        let rail = Planar::splat(like, leg.frame.rail);
+        let tangent = Planar::splat(like, leg.slider_guide);
+        let chord = leg.chord(position, arm);
+        let DVec2 { x, y } = leg.frame.between_guides;
+        let per_sine = like.splat(1.0 / y);
         let (first, second) = (chord.cross(tangent) * per_sine, rail.cross(chord) * per_sine);
-        let within = margin_within(first, self.frame.rail_travel).smaller(margin_within(second, self.travel));
-        let limit_margin = or_far_off(within);
-        let DVec2 { x, y } = self.frame.between_guides;
-        ChainLanes {
+        ChainLanes::new(
             tangent,
-            along: arm.dot(tangent),
-            across: arm.cross(tangent),
-            offset: second,
-            beam: second.abs(),
-            signed_beam: second,
-            proximal: None,
-            guides: [
+            [arm.dot(tangent), arm.cross(tangent)],
+            [second, second.abs()],
+            [
                 Some(Planar::splat(like, DVec2::new(x, -y))),
                 Some(Planar::new(one, zero)),
                 None,
             ],
-            limit_margin,
-            reachable: limit_margin.at_least(zero),
-        }
+            margin_within_both([first, second], [leg.frame.rail_travel, leg.travels[0]]),
+        )
     }
 
-    fn enclose(
-        frame: &LegFrameEnclosure,
-        _: &Design,
-        _: &LegSettings,
-        position: PlanarModel,
-        arm: PlanarModel,
-    ) -> ChainEnclosure {
+    fn enclose(leg: &LegToEnclose<'_>, position: PlanarModel, arm: PlanarModel) -> ChainEnclosure {
+        let frame = leg.frame;
         let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
         let [along, height] = frame.rail.enter(frame.vector(position, arm));
         let [cosine, sine] = frame.between_guides.axis();
         let second = height.scaled(Interval::exactly(1.0) / sine);
         let first = along - second.scaled(cosine);
-        let [from_start, to_end] = enclosed_within(first.scaled(frame.link), frame.rail_travel);
+        let slider = enclosed_within(first.scaled(frame.link), frame.rail_travel);
         let [from_lower, to_upper] = enclosed_within(second, frame.guide_travel);
+        let rail = [cosine, -sine].map(TaylorModel::constant);
         ChainEnclosure {
-            reach: [from_start, to_end, from_lower, to_upper],
-            tangent: frame.between_guides.leave(frame.rail.axis().map(TaylorModel::constant)),
-            offset: second,
-            beam: absolute(second),
-            signed_beam: second,
-            slider: Some([from_start, to_end]),
-            proximal: None,
-            guides: [
-                Some([TaylorModel::constant(cosine), TaylorModel::constant(-sine)]),
-                Some([one, zero]),
-                None,
-            ],
-            lever_square: None,
+            slider: Some(slider),
+            ..ChainEnclosure::new(
+                [slider[0], slider[1], from_lower, to_upper],
+                frame.between_guides.leave(frame.rail.axis().map(TaylorModel::constant)),
+                [second, absolute(second)],
+                [Some(rail), Some([one, zero]), None],
+            )
         }
     }
 
-    fn enclose_members(
-        frame: &LegFrameEnclosure,
-        _: &Design,
-        _: &LegSettings,
-        chain: &ChainEnclosure,
-        _: PlanarModel,
-        tip: PlanarModel,
-    ) -> MembersEnclosure {
-        let centre = difference(tip, chain.tangent.map(|part| part * chain.offset));
-        let guide = enclosed_guide(centre, chain.tangent, frame.guide_travel);
-        enclosed_members_on_slider(frame, chain, centre, guide)
-    }
-
-    #[inline(always)]
-    fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
-        let centre = c.minus(distal.tangent.scaled(distal.offset));
-        members_on_slider(&self.frame, centre, guide_axis(centre, distal.tangent, self.travel))
-    }
-
-    fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {
-        [
-            (posture.b - posture.a).dot(self.frame.rail),
-            posture.distal.offset,
-            wrapped(self.frame.orientation(arm) - angle_of(self.frame.rail)),
-        ]
-    }
-
-    fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
-        [Some(self.frame.rail_travel), Some(self.travel), None]
-    }
-
-    fn bodies(&self, posture: &ChainPosture, arm: DVec2, driven: usize) -> Vec<LegBody> {
-        let [first, second, _] = self.joint_values(posture, arm);
-        let [from, to] = guide_ends(posture.b, self.guide, self.travel);
-        let mut slider = slider_body(&self.frame, posture.b, first, driven == 0);
-        slider.parts.push(LegPart::GuideBar {
-            from,
-            to,
+    fn bodies(leg: &LegSizes, posture: &ChainPosture, values: [f64; 3], driven: usize) -> Vec<LegBody> {
+        let (c, guide, travel) = (posture.c, leg.slider_guide, leg.travels[0]);
+        let mut slider = slider_body(leg, posture, values[0], driven == 0);
+        slider
+            .parts
+            .push(guide_bar(posture.b, guide, travel, MemberKind::Guide));
+        let carriage = LegBody {
+            name: "carriage",
             kind: MemberKind::Guide,
-        });
-        vec![
-            slider,
-            LegBody {
-                name: "carriage",
-                kind: MemberKind::Guide,
-                origin: posture.c,
-                axis: self.guide,
-                joint: prismatic(second, self.travel, driven == 1),
-                parts: vec![
-                    LegPart::Carriage {
-                        at: posture.c,
-                        axis: self.guide,
-                        on: MemberKind::Guide,
-                        actuated: driven == 1,
-                    },
-                    pin(posture.c, driven == 2, [MemberKind::Guide, MemberKind::PlatformBar]),
-                ],
-            },
-        ]
+            origin: c,
+            axis: guide,
+            joint: prismatic(values[1], travel, driven == 1),
+            parts: vec![
+                carriage_on(MemberKind::Guide, c, guide, driven == 1),
+                pin(c, driven == 2, [MemberKind::Guide, MemberKind::PlatformBar]),
+            ],
+        };
+        vec![slider, carriage]
     }
 
-    fn travels(&self, _: &ChainPosture) -> Vec<Travel> {
-        vec![Travel::of_rail(&self.frame)]
-    }
-
-    fn reach_box(&self) -> [DVec2; 2] {
-        box_about(self.frame.rail_ends(), farthest(self.travel))
-    }
-
-    fn assembly(&self) -> Assembly {
-        let reach = self.length.max(farthest(self.travel)) * self.frame.between_guides.y;
-        assembly_from_rail(&self.frame, reach)
+    fn assembly(leg: &LegSizes) -> Assembly {
+        leg.assembly_from_rail(leg.longest_guide(1) * leg.frame.between_guides.y)
     }
 }

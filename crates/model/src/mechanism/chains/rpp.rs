@@ -3,32 +3,25 @@
 
 use glam::DVec2;
 
-use super::{
-    Within, absolute, box_about, enclosed_guide, enclosed_within, farthest, guide_axis, guide_ends, margin_within,
-    or_far_off, pin, platform_guide_body, prismatic, revolute, turned, wrapped,
-};
+use super::{absolute, enclosed_within, margin_within_both, platform_guide, turned};
 use crate::enclosure::{Interval, MembersEnclosure, PlanarModel, TaylorModel, cross as cross_models};
 use crate::lanes::{Planar, Real};
+use crate::mechanism::chain::bodies::{carriage_on, guide_bar, pin, platform_guide_body, prismatic, revolute};
+use crate::mechanism::chain::members::{enclosed_guide, guide_axis};
 use crate::mechanism::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, Design, DesignVariable,
-    DistalLanes, JointKind, JointPoint, LegBody, LegFrame, LegFrameEnclosure, LegPart, LegSettings, LockedKind,
-    LockedLeg, MemberKind, Members, ProximalEnclosure, ProximalLanes, Shortfall, Solved, Travel,
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, DesignVariable,
+    DistalLanes, JointKind, JointPoint, LegBody, LegFrameEnclosure, LegSizes, LegToEnclose, LockedKind, LockedLeg,
+    MemberKind, Members, ProximalEnclosure, ProximalLanes, Shortfall, Solved, Within,
 };
 use crate::spatial::{Rotation, cross};
 
 /// Chain of a leg with a guide that turns about the base joint and a guide on the platform.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RppChain {
-    frame: LegFrame,
-    lengths: [f64; 2],
-    travels: [[f64; 2]; 2],
-}
+pub struct RppChain;
 
-impl RppChain {
-    /// Returns `f_i`, the direction of the guide at the base, for the direction of that on the platform.
-    fn base_guide(&self, guide: DVec2) -> DVec2 {
-        Rotation::by(self.frame.between_guides).apply(guide)
-    }
+/// Returns `f_i`, the direction of the guide at the base, for the direction of that on the platform.
+fn base_guide_of(leg: &LegSizes, guide: DVec2) -> DVec2 {
+    Rotation::by(leg.frame.between_guides).apply(guide)
 }
 
 /// Encloses the travel of the guide at the base, in units of `L_b`.
@@ -52,84 +45,45 @@ impl Chain for RppChain {
         ],
     };
 
-    fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self {
-        let lengths = [design.proximal_length(), design.link_length()];
-        Self {
-            frame,
-            lengths,
-            travels: lengths.map(|length| settings.geometry.travel(length)),
-        }
-    }
-
-    fn frame(&self) -> &LegFrame {
-        &self.frame
-    }
-
-    fn solve(&self, c: DVec2, arm: DVec2) -> Result<Solved, Shortfall> {
-        let guide = self.frame.platform_guide(arm);
-        let base_guide = self.base_guide(guide);
-        let sine = self.frame.between_guides.y;
-        let chord = c - self.frame.anchor;
+    fn solve(leg: &LegSizes, c: DVec2, arm: DVec2) -> Result<Solved, Shortfall> {
+        let guide = leg.frame.platform_guide(arm);
+        let base_guide = base_guide_of(leg, guide);
+        let sine = leg.frame.between_guides.y;
+        let chord = c - leg.frame.anchor;
         let (first, second) = (cross(guide, chord) / sine, cross(base_guide, chord) / sine);
-        let within = Within::limits(first, self.travels[0]).and(Within::limits(second, self.travels[1]));
-        let posture = ChainPosture {
-            a: self.frame.anchor,
-            b: self.frame.anchor + base_guide * first,
-            c,
-            slider: None,
-            proximal: Some(BarPosture {
-                direction: base_guide,
-                offset: first,
-            }),
-            distal: BarPosture {
-                direction: -guide,
-                offset: second,
-            },
-            beam: second.abs(),
+        Ok(Solved {
+            b: leg.frame.anchor + base_guide * first,
+            proximal: Some(BarPosture::new(base_guide, first)),
+            distal: BarPosture::new(-guide, second),
             guides: [None, Some(base_guide), Some(-guide)],
-            limit_margin: within.margin,
-        };
-        Ok((posture, within.beyond))
+            within: Within::limits(first, leg.travels[0]).and(Within::limits(second, leg.travels[1])),
+        })
     }
 
-    fn locked(&self, driven: usize, value: f64) -> LockedLeg {
-        let c = self.frame.platform_joint;
-        let guide = self.frame.platform_guide(c);
-        let base_guide = self.base_guide(guide);
-        let (platform, normal) = match driven {
-            1 => (c - base_guide * value, guide.perp()),
-            _ => (c + guide * value, base_guide.perp()),
-        };
-        LockedLeg {
-            platform,
-            base: self.frame.anchor,
-            kind: LockedKind::PlatformLine(normal),
+    fn locked(leg: &LegSizes, driven: usize, value: f64) -> LockedLeg {
+        let (a, c) = (leg.frame.anchor, leg.frame.platform_joint);
+        let guide = leg.frame.platform_guide(c);
+        let base_guide = base_guide_of(leg, guide);
+        match driven {
+            1 => LockedLeg::new(c - base_guide * value, a, LockedKind::PlatformLine(guide.perp())),
+            _ => LockedLeg::new(c + guide * value, a, LockedKind::PlatformLine(base_guide.perp())),
         }
     }
 
     #[inline(always)]
-    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V> {
+    fn lanes<V: Real>(leg: &LegSizes, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V> {
         let like = position.x;
         let (zero, one) = (like.splat(0.0), like.splat(1.0));
-        let to_unit = like.splat(1.0 / self.frame.arm_length);
-        let guide = turned(arm, self.frame.platform_guide).scaled(to_unit);
-        let base_guide = turned(guide, self.frame.between_guides);
-        let chord = position.plus(arm.minus(Planar::splat(like, self.frame.anchor)));
-        let per_sine = like.splat(1.0 / self.frame.between_guides.y);
+        let guide = platform_guide(leg, arm);
+        let base_guide = turned(guide, leg.frame.between_guides);
+        let chord = leg.chord(position, arm);
+        let per_sine = like.splat(1.0 / leg.frame.between_guides.y);
         let (first, second) = (guide.cross(chord) * per_sine, base_guide.cross(chord) * per_sine);
-        let within = margin_within(first, self.travels[0]).smaller(margin_within(second, self.travels[1]));
-        let limit_margin = or_far_off(within);
         let tangent = Planar::new(-guide.x, -guide.y);
         // In axes along −g, the guide at the base has the components −cos β and −sin β.
-        let direction = Planar::splat(like, -self.frame.between_guides);
-        let to_share = like.splat(1.0 / self.lengths[0]);
+        let direction = Planar::splat(like, -leg.frame.between_guides);
+        let to_share = like.splat(1.0 / leg.proximal);
         ChainLanes {
-            tangent,
-            along: arm.dot(tangent),
-            across: arm.cross(tangent),
-            offset: second,
-            beam: second.abs(),
-            signed_beam: second,
             proximal: Some(ProximalLanes {
                 vector: direction.scaled(first),
                 direction,
@@ -137,19 +91,18 @@ impl Chain for RppChain {
                 share: first * to_share,
                 distal_share: second * to_share,
             }),
-            guides: [None, Some(direction), Some(Planar::new(one, zero))],
-            limit_margin,
-            reachable: limit_margin.at_least(zero),
+            ..ChainLanes::new(
+                tangent,
+                [arm.dot(tangent), arm.cross(tangent)],
+                [second, second.abs()],
+                [None, Some(direction), Some(Planar::new(one, zero))],
+                margin_within_both([first, second], leg.travels),
+            )
         }
     }
 
-    fn enclose(
-        frame: &LegFrameEnclosure,
-        _: &Design,
-        _: &LegSettings,
-        position: PlanarModel,
-        arm: PlanarModel,
-    ) -> ChainEnclosure {
+    fn enclose(leg: &LegToEnclose<'_>, position: PlanarModel, arm: PlanarModel) -> ChainEnclosure {
+        let frame = leg.frame;
         let (one, zero) = (TaylorModel::exactly(1.0), TaylorModel::exactly(0.0));
         let guide = frame.platform_guide.leave(arm);
         let chord = frame.vector(position, arm);
@@ -161,124 +114,82 @@ impl Chain for RppChain {
         let [second_lower, second_upper] = enclosed_within(second, frame.guide_travel);
         let direction = [cosine, sine].map(|part| TaylorModel::constant(-part));
         ChainEnclosure {
-            reach: [first_lower, first_upper, second_lower, second_upper],
-            tangent: guide.map(|part| -part),
-            offset: second,
-            beam: absolute(second),
-            signed_beam: second,
-            slider: None,
             proximal: Some(ProximalEnclosure {
                 vector: direction.map(|part| part * first),
                 direction,
                 length: absolute(first),
                 offset: first,
             }),
-            guides: [None, Some(direction), Some([one, zero])],
-            lever_square: None,
+            ..ChainEnclosure::new(
+                [first_lower, first_upper, second_lower, second_upper],
+                guide.map(|part| -part),
+                [second, absolute(second)],
+                [None, Some(direction), Some([one, zero])],
+            )
         }
     }
 
     fn enclose_members(
-        frame: &LegFrameEnclosure,
-        _: &Design,
-        _: &LegSettings,
+        leg: &LegToEnclose<'_>,
         chain: &ChainEnclosure,
         anchor: PlanarModel,
         tip: PlanarModel,
     ) -> MembersEnclosure {
+        let frame = leg.frame;
         let guide = chain.tangent.map(|part| -part);
+        let base_guide = frame.between_guides.leave(guide);
         MembersEnclosure {
-            proximal: Some(enclosed_guide(
-                anchor,
-                frame.between_guides.leave(guide),
-                base_travel(frame),
-            )),
+            proximal: Some(enclosed_guide(anchor, base_guide, base_travel(frame))),
             distal: enclosed_guide(tip, guide, frame.guide_travel),
             rail: None,
         }
     }
 
     #[inline(always)]
-    fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
-        let like = c.x;
+    fn members<V: Real>(leg: &LegSizes, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
         let guide = Planar::new(-distal.tangent.x, -distal.tangent.y);
-        let base_guide = turned(guide, self.frame.between_guides);
+        let base_guide = turned(guide, leg.frame.between_guides);
+        let anchor = Planar::splat(c.x, leg.frame.anchor);
         Members {
-            proximal: Some(guide_axis(
-                Planar::splat(like, self.frame.anchor),
-                base_guide,
-                self.travels[0],
-            )),
-            distal: guide_axis(c, guide, self.travels[1]),
+            proximal: Some(guide_axis(anchor, base_guide, leg.travels[0])),
+            distal: guide_axis(c, guide, leg.travels[1]),
             rail: None,
         }
     }
 
-    fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {
-        let first = posture.proximal.map_or(0.0, |bar| bar.offset);
-        [wrapped(self.frame.orientation(arm)), first, posture.distal.offset]
-    }
-
-    fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
-        [None, Some(self.travels[0]), Some(self.travels[1])]
-    }
-
-    fn bodies(&self, posture: &ChainPosture, arm: DVec2, driven: usize) -> Vec<LegBody> {
-        let [turn, first, second] = self.joint_values(posture, arm);
+    fn bodies(leg: &LegSizes, posture: &ChainPosture, values: [f64; 3], driven: usize) -> Vec<LegBody> {
+        let (a, b) = (posture.a, posture.b);
         let guide = -posture.distal.direction;
-        let base_guide = self.base_guide(guide);
-        let [from, to] = guide_ends(posture.a, base_guide, self.travels[0]);
-        let carriage = |axis: DVec2, on: MemberKind, actuated: bool| LegPart::Carriage {
-            at: posture.b,
-            axis,
-            on,
-            actuated,
-        };
+        let base_guide = base_guide_of(leg, guide);
+        let kind = MemberKind::TurningGuide;
         vec![
             LegBody {
                 name: "turning_guide",
-                kind: MemberKind::TurningGuide,
-                origin: posture.a,
+                kind,
+                origin: a,
                 axis: base_guide,
-                joint: revolute(turn, driven == 0),
+                joint: revolute(values[0], driven == 0),
                 parts: vec![
-                    LegPart::GuideBar {
-                        from,
-                        to,
-                        kind: MemberKind::TurningGuide,
-                    },
-                    pin(posture.a, driven == 0, [MemberKind::TurningGuide; 2]),
+                    guide_bar(a, base_guide, leg.travels[0], kind),
+                    pin(a, driven == 0, [kind; 2]),
                 ],
             },
             LegBody {
                 name: "carriage",
-                kind: MemberKind::TurningGuide,
-                origin: posture.b,
+                kind,
+                origin: b,
                 axis: base_guide,
-                joint: prismatic(first, self.travels[0], driven == 1),
+                joint: prismatic(values[1], leg.travels[0], driven == 1),
                 parts: vec![
-                    carriage(base_guide, MemberKind::TurningGuide, driven == 1),
-                    carriage(guide, MemberKind::Guide, driven == 2),
+                    carriage_on(kind, b, base_guide, driven == 1),
+                    carriage_on(MemberKind::Guide, b, guide, driven == 2),
                 ],
             },
-            platform_guide_body(posture.c, guide, second, self.travels[1], driven == 2),
+            platform_guide_body(leg, posture, values[2], driven == 2),
         ]
     }
 
-    fn travels(&self, _: &ChainPosture) -> Vec<Travel> {
-        Vec::new()
-    }
-
-    fn reach_box(&self) -> [DVec2; 2] {
-        let [first, second] = self.travels.map(farthest);
-        box_about([self.frame.anchor; 2], first + second)
-    }
-
-    fn assembly(&self) -> Assembly {
-        let [first, second] = [0, 1].map(|k| self.lengths[k].max(farthest(self.travels[k])));
-        Assembly {
-            value: first + second + self.frame.arm_length,
-            threshold: self.frame.anchor_distance,
-        }
+    fn assembly(leg: &LegSizes) -> Assembly {
+        leg.assembly(leg.longest_guide(0) + leg.longest_guide(1), leg.frame.anchor_distance)
     }
 }

@@ -2,29 +2,21 @@
 
 use glam::DVec2;
 
-use super::{angle_of, box_about, crank_body, enclosed_members_on_crank, link_body, members_on_crank, wrapped};
-use crate::enclosure::{AxisEnclosure, Interval, MembersEnclosure, PlanarModel, TaylorModel, difference, dot};
+use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot};
 use crate::lanes::{Planar, Real};
 use crate::mechanism::{
-    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, ChainPosture, Design, DesignVariable,
-    DistalLanes, JointKind, JointPoint, LegBody, LegFrame, LegFrameEnclosure, LegSettings, LockedKind, LockedLeg,
-    MemberAxis, MemberKind, Members, ProximalLanes, ReachReason, Shortfall, Solved, Travel,
+    Assembly, BarPosture, Chain, ChainDescription, ChainEnclosure, ChainLanes, DesignVariable, JointKind, JointPoint,
+    LegSizes, LegToEnclose, LockedKind, LockedLeg, MemberKind, ProximalLanes, Shortfall, Solved, Within,
 };
 use crate::spatial::unit;
 
 /// Chain of a leg with a crank and a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RrrChain {
-    frame: LegFrame,
-    crank: f64,
-    link: f64,
-}
+pub struct RrrChain;
 
-impl RrrChain {
-    /// Returns `(L_a² − L_b²)/2` \[m²\], which is 0 for equal lengths.
-    fn skew(&self) -> f64 {
-        0.5 * (self.crank - self.link) * (self.crank + self.link)
-    }
+/// Returns `(L_a² − L_b²)/2` \[m²\], which is 0 for equal lengths.
+fn skew_of(leg: &LegSizes) -> f64 {
+    0.5 * (leg.proximal - leg.link) * (leg.proximal + leg.link)
 }
 
 impl Chain for RrrChain {
@@ -39,86 +31,54 @@ impl Chain for RrrChain {
         variables: &[DesignVariable::ProximalLength],
     };
 
-    fn new(frame: LegFrame, design: &Design, _: &LegSettings) -> Self {
-        Self {
-            frame,
-            crank: design.proximal_length(),
-            link: design.link_length(),
-        }
-    }
-
-    fn frame(&self) -> &LegFrame {
-        &self.frame
-    }
-
-    fn solve(&self, c: DVec2, _: DVec2) -> Result<Solved, Shortfall> {
-        let chord = c - self.frame.anchor;
+    fn solve(leg: &LegSizes, c: DVec2, _: DVec2) -> Result<Solved, Shortfall> {
+        let chord = c - leg.frame.anchor;
         let distance = chord.length();
-        let shortest = (self.crank - self.link).abs();
-        let mut limit_margin = self.crank + self.link - distance;
+        let shortest = (leg.proximal - leg.link).abs();
+        let mut margin = leg.proximal + leg.link - distance;
         if shortest > 0.0 {
-            limit_margin = limit_margin.min(distance - shortest);
+            margin = margin.min(distance - shortest);
         }
-        if limit_margin < 0.0 {
-            return Err(Shortfall {
-                limit_margin,
-                reason: ReachReason::OutOfReach,
-            });
+        if margin < 0.0 {
+            return Err(Shortfall::out_of_reach(margin));
         }
         if distance == 0.0 {
-            return Err(Shortfall {
-                limit_margin: 0.0,
-                reason: ReachReason::Degenerate,
-            });
+            return Err(Shortfall::degenerate());
         }
-        let foot = 0.5 * distance + self.skew() / distance;
-        let elbow = self.frame.sign * ((self.crank - foot) * (self.crank + foot)).max(0.0).sqrt();
+        let foot = 0.5 * distance + skew_of(leg) / distance;
+        let elbow = leg.frame.sign * ((leg.proximal - foot) * (leg.proximal + foot)).max(0.0).sqrt();
         let crank = chord * (foot / distance) + chord.perp() / distance * elbow;
-        let b = self.frame.anchor + crank;
-        let posture = ChainPosture {
-            a: self.frame.anchor,
+        let b = leg.frame.anchor + crank;
+        Ok(Solved {
             b,
-            c,
-            slider: None,
-            proximal: Some(BarPosture {
-                direction: crank / self.crank,
-                offset: self.crank,
-            }),
-            distal: BarPosture {
-                direction: (c - b) / self.link,
-                offset: self.link,
-            },
-            beam: self.link,
+            proximal: Some(BarPosture::new(crank / leg.proximal, leg.proximal)),
+            distal: BarPosture::new((c - b) / leg.link, leg.link),
             guides: [None; 3],
-            limit_margin,
-        };
-        Ok((posture, None))
+            within: Within { margin, beyond: None },
+        })
     }
 
-    fn locked(&self, driven: usize, value: f64) -> LockedLeg {
-        let (a, c) = (self.frame.anchor, self.frame.platform_joint);
+    fn locked(leg: &LegSizes, driven: usize, value: f64) -> LockedLeg {
+        let (a, c) = (leg.frame.anchor, leg.frame.platform_joint);
+        let (crank, link) = (leg.proximal, leg.link);
         let (platform, base, radius) = match driven {
-            0 => (c, a + unit(value) * self.crank, self.link),
-            1 => (c, a, (DVec2::X * self.crank + unit(value) * self.link).length()),
-            _ => (c - unit(-value) * self.link, a, self.crank),
+            0 => (c, a + unit(value) * crank, link),
+            1 => (c, a, (DVec2::X * crank + unit(value) * link).length()),
+            _ => (c - unit(-value) * link, a, crank),
         };
-        LockedLeg {
-            platform,
-            base,
-            kind: LockedKind::Circle(radius),
-        }
+        LockedLeg::new(platform, base, LockedKind::Circle(radius))
     }
 
     #[inline(always)]
-    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V> {
+    fn lanes<V: Real>(leg: &LegSizes, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V> {
         let like = position.x;
-        let chord = position.plus(arm.minus(Planar::splat(like, self.frame.anchor)));
+        let chord = leg.chord(position, arm);
         let square = chord.dot(chord);
         let (zero, one, half) = (like.splat(0.0), like.splat(1.0), like.splat(0.5));
-        let (crank, link) = (like.splat(self.crank), like.splat(self.link));
+        let (crank, link) = (like.splat(leg.proximal), like.splat(leg.link));
         // Distance of the foot of B on the chord from A, as a fraction of the chord. With equal lengths it is one half, and a
         // division is saved.
-        let skew = self.skew();
+        let skew = skew_of(leg);
         let foot = if skew == 0.0 {
             half
         } else {
@@ -127,15 +87,15 @@ impl Chain for RrrChain {
         let rest = one - foot;
         // Square of the ratio of the elbow's distance from the chord to the chord's length. Out of reach it is negative
         // and its root is NaN, for which every comparison is false.
-        let ratio = (like.splat(self.crank * self.crank) - foot * foot * square) / square;
-        let elbow = like.splat(self.frame.sign) * ratio.sqrt();
-        let to_unit = like.splat(1.0 / self.link);
+        let ratio = (like.splat(leg.proximal * leg.proximal) - foot * foot * square) / square;
+        let elbow = like.splat(leg.frame.sign) * ratio.sqrt();
+        let to_unit = like.splat(1.0 / leg.link);
         let tangent = chord.scaled(rest).minus(chord.perp().scaled(elbow)).scaled(to_unit);
         // (B − A) × u = (B − A) × (C − A)/L, to which only the component of B − A normal to the chord contributes.
         let lever = -(elbow * square * to_unit);
 
-        let longest = self.crank + self.link;
-        let shortest = (self.crank - self.link).abs();
+        let longest = leg.proximal + leg.link;
+        let shortest = (leg.proximal - leg.link).abs();
         let distance = square.sqrt();
         let mut reachable = like.splat(longest * longest).at_least(square) & square.exceeds(zero);
         let mut limit_margin = like.splat(longest) - distance;
@@ -153,10 +113,10 @@ impl Chain for RrrChain {
             signed_beam: link,
             proximal: Some(ProximalLanes {
                 vector,
-                direction: vector.scaled(like.splat(1.0 / self.crank)),
+                direction: vector.scaled(like.splat(1.0 / leg.proximal)),
                 length: crank,
                 share: one,
-                distal_share: like.splat(self.link / self.crank),
+                distal_share: like.splat(leg.link / leg.proximal),
             }),
             guides: [None; 3],
             limit_margin: limit_margin.larger(zero).select(reachable, limit_margin.smaller(zero)),
@@ -166,28 +126,17 @@ impl Chain for RrrChain {
 
     /// With lengths in units of `L_b`, `v` leads from `A_i` to `C_i`, `S = |v|²`, `λ = L_a/L_b`, and `f = 1/2 + (λ² − 1)/(2S)` is
     /// the foot of `B_i`: `u = (1 − f) v − τ v⊥` with `τ = σ √(λ²/S − f²)`.
-    fn enclose(
-        frame: &LegFrameEnclosure,
-        design: &Design,
-        _: &LegSettings,
-        position: PlanarModel,
-        arm: PlanarModel,
-    ) -> ChainEnclosure {
+    fn enclose(leg: &LegToEnclose<'_>, position: PlanarModel, arm: PlanarModel) -> ChainEnclosure {
+        let frame = leg.frame;
         let [x, y] = frame.vector(position, arm);
         let one = TaylorModel::exactly(1.0);
         let square = dot([x, y], [x, y]);
         let chain = |reach, tangent, vector, lever_square| ChainEnclosure {
-            reach,
-            tangent,
-            offset: one,
-            beam: one,
-            signed_beam: one,
-            slider: None,
             proximal: Some(frame.crank(vector)),
-            guides: [None; 3],
             lever_square: Some(lever_square),
+            ..ChainEnclosure::new(reach, tangent, [one, one], [None; 3])
         };
-        if design.proximal_length() == design.link_length() {
+        if leg.design.proximal_length() == leg.design.link_length() {
             let elbow = one - square.times(0.25);
             let turn = (square.reciprocal() - one.times(0.25)).sqrt().times(frame.sign);
             let tangent = [x.times(0.5) + turn * y, y.times(0.5) - turn * x];
@@ -220,58 +169,7 @@ impl Chain for RrrChain {
         chain(reach, tangent, vector, lever_square)
     }
 
-    fn enclose_members(
-        frame: &LegFrameEnclosure,
-        _: &Design,
-        _: &LegSettings,
-        chain: &ChainEnclosure,
-        anchor: PlanarModel,
-        tip: PlanarModel,
-    ) -> MembersEnclosure {
-        let elbow = difference(tip, chain.tangent);
-        let link = AxisEnclosure::between(elbow, tip, chain.tangent);
-        enclosed_members_on_crank(frame, [anchor, elbow], link)
-    }
-
-    #[inline(always)]
-    fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
-        let link = MemberAxis::back_from(c, distal.tangent, c.x.splat(self.link));
-        members_on_crank(&self.frame, self.crank, link.from, link)
-    }
-
-    fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3] {
-        let (crank, link) = (angle_of(posture.b - posture.a), angle_of(posture.distal.direction));
-        [
-            crank,
-            wrapped(link - crank),
-            wrapped(self.frame.orientation(arm) - link),
-        ]
-    }
-
-    fn joint_limits(&self) -> [Option<[f64; 2]>; 3] {
-        [None; 3]
-    }
-
-    fn bodies(&self, posture: &ChainPosture, arm: DVec2, driven: usize) -> Vec<LegBody> {
-        let [crank, elbow, _] = self.joint_values(posture, arm);
-        vec![
-            crank_body([posture.a, posture.b], crank, driven == 0),
-            link_body([posture.b, posture.c], MemberKind::Crank, elbow, driven),
-        ]
-    }
-
-    fn travels(&self, _: &ChainPosture) -> Vec<Travel> {
-        Vec::new()
-    }
-
-    fn reach_box(&self) -> [DVec2; 2] {
-        box_about([self.frame.anchor; 2], self.crank + self.link)
-    }
-
-    fn assembly(&self) -> Assembly {
-        Assembly {
-            value: 0.5 * (self.crank + self.link) + self.frame.arm_length,
-            threshold: 0.5 * self.frame.anchor_distance,
-        }
+    fn assembly(leg: &LegSizes) -> Assembly {
+        leg.assembly(0.5 * (leg.proximal + leg.link), 0.5 * leg.frame.anchor_distance)
     }
 }

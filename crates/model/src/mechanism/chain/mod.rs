@@ -1,13 +1,21 @@
 //! The interface of a chain: three joints from the base to the platform, whichever of them is driven.
 
+pub(super) mod bodies;
+pub(super) mod members;
+mod sizes;
+
+pub use sizes::LegSizes;
+
 use glam::DVec2;
 
-use super::chain_enclosure::{ChainEnclosure, LegFrameEnclosure};
+use super::chain_enclosure::{ChainEnclosure, LegToEnclose};
 use super::joint::{JointKind, JointPoint};
-use super::{Design, DesignVariable, LegBody, LegFrame, LegSettings, MemberKind, Members, Shortfall, Travel};
+use super::{DesignVariable, LegBody, MemberKind, Members, Shortfall, Within};
 use crate::enclosure::{MembersEnclosure, PlanarModel};
 use crate::lanes::{Planar, Real};
 use crate::spatial::{Pose, Rotation};
+use bodies::leg_bodies;
+use members::{enclosed_members, members_of};
 
 /// Static description of a chain, independent of its lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,6 +43,11 @@ impl ChainDescription {
     pub const fn is_on_rails(&self) -> bool {
         matches!(self.joints[0], JointKind::Prismatic)
     }
+
+    /// Returns whether the last joint is a carriage on a guide of the platform.
+    const fn has_platform_guide(&self) -> bool {
+        matches!(self.joints[2], JointKind::Prismatic)
+    }
 }
 
 /// A bar in the plane at a posture.
@@ -44,6 +57,13 @@ pub struct BarPosture {
     pub direction: DVec2,
     /// Distance from its proximal to its distal end along this vector \[m\], which is negative on the far side of a guide.
     pub offset: f64,
+}
+
+impl BarPosture {
+    /// Creates the bar of a direction and an offset.
+    pub(super) fn new(direction: DVec2, offset: f64) -> Self {
+        Self { direction, offset }
+    }
 }
 
 /// Points and directions of a chain at a pose that it reaches, in the base frame.
@@ -69,8 +89,20 @@ pub struct ChainPosture {
     pub limit_margin: f64,
 }
 
-/// A posture, and what is wrong with it if a joint is beyond a limit.
-pub type Solved = (ChainPosture, Option<Shortfall>);
+/// What the inverse kinematics of a chain finds, from which its [`ChainPosture`] follows.
+#[derive(Debug, Clone, Copy)]
+pub struct Solved {
+    /// `B_i` \[m\].
+    pub b: DVec2,
+    /// Bar from `A_i` to `B_i`, for chains that have one.
+    pub proximal: Option<BarPosture>,
+    /// Bar from `B_i` to `C_i`.
+    pub distal: BarPosture,
+    /// Unit vectors along which the prismatic joints move the platform.
+    pub guides: [Option<DVec2>; 3],
+    /// The joints between their limits.
+    pub within: Within,
+}
 
 /// What a leg with a locked joint requires of the platform.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,6 +127,11 @@ pub enum LockedKind {
 }
 
 impl LockedLeg {
+    /// Creates what is required of a point of the platform and a point of the base.
+    pub(super) fn new(platform: DVec2, base: DVec2, kind: LockedKind) -> Self {
+        Self { platform, base, kind }
+    }
+
     /// Returns the radius of the circle, 0 for a line.
     pub fn radius(&self) -> f64 {
         match self.kind {
@@ -175,6 +212,32 @@ pub struct ChainLanes<V: Real> {
     pub reachable: V::Mask,
 }
 
+impl<V: Real> ChainLanes<V> {
+    /// Creates a chain without a bar from `A_i` to `B_i` that reaches the poses where its limit margin is not negative; `beam` is the
+    /// length of the distal bar in the beam model.
+    #[inline(always)]
+    pub(super) fn new(
+        tangent: Planar<V>,
+        [along, across]: [V; 2],
+        [offset, beam]: [V; 2],
+        guides: [Option<Planar<V>>; 3],
+        limit_margin: V,
+    ) -> Self {
+        Self {
+            tangent,
+            along,
+            across,
+            offset,
+            beam,
+            signed_beam: offset,
+            proximal: None,
+            guides,
+            limit_margin,
+            reachable: limit_margin.at_least(limit_margin.splat(0.0)),
+        }
+    }
+}
+
 /// Distal bar of a leg, as the members of the leg need it.
 #[derive(Clone, Copy)]
 pub struct DistalLanes<V> {
@@ -193,74 +256,57 @@ pub struct Assembly {
     pub threshold: f64,
 }
 
-/// A chain of three joints; a value holds the constants of one leg of one design.
+/// A chain of three joints: its formulas, for a leg of given sizes.
 pub trait Chain: Copy + std::fmt::Debug + PartialEq + Send + Sync {
     /// What is known of the chain without any lengths.
     const DESCRIPTION: ChainDescription;
-
-    /// Creates the chain of a leg in its frame.
-    fn new(frame: LegFrame, design: &Design, settings: &LegSettings) -> Self;
-
-    /// Returns the frame.
-    fn frame(&self) -> &LegFrame;
 
     /// Solves the inverse kinematics with `C_i` at `c` in the base frame and `arm` = `C_i − P` \[m\] (docs/model.md, section 2.5), and
     /// tells which limit a joint is beyond, if one is.
     ///
     /// # Errors
     /// Returns the [`Shortfall`] if the working mode has no real solution, or if a direction of the chain is undefined.
-    fn solve(&self, c: DVec2, arm: DVec2) -> Result<Solved, Shortfall>;
+    fn solve(leg: &LegSizes, c: DVec2, arm: DVec2) -> Result<Solved, Shortfall>;
 
     /// Returns what the leg requires of the platform while joint `driven` is locked at a value \[m or rad\]
     /// (docs/model.md, section 2.9).
-    fn locked(&self, driven: usize, value: f64) -> LockedLeg;
+    fn locked(leg: &LegSizes, driven: usize, value: f64) -> LockedLeg;
 
     /// Solves the inverse kinematics at several poses at once, with `C_i` at `position + arm`.
     ///
     /// It is optimized for speed and may work in the chain's own axes. It rounds differently from [`Chain::solve`] and does not give
     /// the reason why a pose is not reached.
-    fn lanes<V: Real>(&self, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V>;
+    fn lanes<V: Real>(leg: &LegSizes, position: Planar<V>, arm: Planar<V>) -> ChainLanes<V>;
 
     /// Encloses the chain of a leg over a box of poses, with `P` at `position` \[m\] and `arm` the unit vector from `P` to `C_i`.
     ///
     /// The formulas are written apart from those of [`Chain::lanes`], so that each checks the other.
-    fn enclose(
-        frame: &LegFrameEnclosure,
-        design: &Design,
-        settings: &LegSettings,
-        position: PlanarModel,
-        arm: PlanarModel,
-    ) -> ChainEnclosure;
+    fn enclose(leg: &LegToEnclose<'_>, position: PlanarModel, arm: PlanarModel) -> ChainEnclosure;
 
-    /// Returns the axes of the members at several poses at once, with the end of the leg at `c`.
-    fn members<V: Real>(&self, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V>;
+    /// Returns what g1 compares.
+    fn assembly(leg: &LegSizes) -> Assembly;
+
+    /// Returns the axes of the members at several poses at once, with the end of the leg at `c`; by default those of a slider or crank
+    /// with a link or a guide.
+    #[inline(always)]
+    fn members<V: Real>(leg: &LegSizes, c: Planar<V>, distal: &DistalLanes<V>) -> Members<V> {
+        members_of::<Self, V>(leg, c, distal)
+    }
 
     /// Encloses the axes of the members over a box of poses, relative to `P` and in multiples of `L_b`: `anchor` is `A_i`, and `tip`
-    /// is `C_i`.
+    /// is `C_i`. The default is that of [`Chain::members`].
     fn enclose_members(
-        frame: &LegFrameEnclosure,
-        design: &Design,
-        settings: &LegSettings,
+        leg: &LegToEnclose<'_>,
         chain: &ChainEnclosure,
         anchor: PlanarModel,
         tip: PlanarModel,
-    ) -> MembersEnclosure;
+    ) -> MembersEnclosure {
+        enclosed_members(leg, chain, anchor, tip)
+    }
 
-    /// Returns the values of the three joints \[m or rad\], angles in (−π, π].
-    fn joint_values(&self, posture: &ChainPosture, arm: DVec2) -> [f64; 3];
-
-    /// Returns the smallest and largest values of the three joints \[m\]; `None` for a joint without limits.
-    fn joint_limits(&self) -> [Option<[f64; 2]>; 3];
-
-    /// Returns the rigid bodies of the leg, from the base to the platform, with the `driven` joint marked.
-    fn bodies(&self, posture: &ChainPosture, arm: DVec2, driven: usize) -> Vec<LegBody>;
-
-    /// Returns the travels of the prismatic joints.
-    fn travels(&self, posture: &ChainPosture) -> Vec<Travel>;
-
-    /// Returns the lower and upper corner of an axis-aligned box that contains every point that the end of the leg can reach \[m\].
-    fn reach_box(&self) -> [DVec2; 2];
-
-    /// Returns what g1 compares.
-    fn assembly(&self) -> Assembly;
+    /// Returns the rigid bodies of the leg, from the base to the platform, with the `driven` joint marked; by default a slider or crank
+    /// with a link, or with a carriage and the guide on the platform.
+    fn bodies(leg: &LegSizes, posture: &ChainPosture, values: [f64; 3], driven: usize) -> Vec<LegBody> {
+        leg_bodies(leg, posture, values, driven)
+    }
 }
