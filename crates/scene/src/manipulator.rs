@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape, surroundings};
+use super::{Label, Nearest, Part, Scene, Solid, SolidShape, surroundings};
 use crate::text::number;
 use kinefront_model::clearance::{Bodies, BodySettings, Clearance, Neighbour, Stack, UprightBody};
 use kinefront_model::evaluation::{Model, PoseScalar, Unreachable};
@@ -39,10 +39,7 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     // The base triangle lies at the height of the members that are attached to it.
     let base = sizes.stack.base_height(design);
     let anchors = manipulator.legs.each_ref().map(|leg| leg.frame().anchor.extend(base));
-    scene.lines.push(Line {
-        part: Part::Base,
-        points: vec![anchors[0], anchors[1], anchors[2], anchors[0]],
-    });
+    scene.add_line(Part::Base, [anchors[0], anchors[1], anchors[2], anchors[0]]);
     frame(&mut scene, DVec2::ZERO, 0.0, 0.12 * design.base_radius(), "O");
     frame(&mut scene, pose.position, pose.phi, 0.12 * design.base_radius(), "P");
 
@@ -59,24 +56,15 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
                 TravelKind::Rail => (Part::Rail, MemberKind::Slider),
                 TravelKind::Stroke => (Part::Stroke, MemberKind::TelescopicLeg),
             };
-            scene.lines.push(Line {
-                part,
-                points: [travel.from, travel.to]
-                    .map(|end| end.extend(sizes.height(kind, index)))
-                    .to_vec(),
-            });
+            let height = sizes.height(kind, index);
+            scene.add_line(part, [travel.from, travel.to].map(|end| end.extend(height)));
         }
         for body in leg.bodies(state) {
             let solids = body.parts.iter().map(|part| sizes.solid(index, part));
             scene.solids.extend(solids);
         }
         scene.solids.push(sizes.platform_bar(index, c, pose.position));
-        let mut label = |at: DVec2, text: String| {
-            scene.labels.push(Label {
-                at: at.extend(lift),
-                text,
-            })
-        };
+        let mut label = |at: DVec2, text: String| scene.add_label(at.extend(lift), text);
         let (anchor, b) = (leg.frame().anchor, state.chain.b);
         label(anchor, format!("A{number}"));
         if b != anchor {
@@ -111,11 +99,6 @@ fn join_labels(labels: &mut Vec<Label>, distance: f64) {
         }
     }
     *labels = joined;
-}
-
-/// Returns the part that a slider or carriage is.
-fn carriage(actuated: bool) -> Part {
-    if actuated { Part::Slider } else { Part::Carriage }
 }
 
 fn flat(point: DVec2) -> DVec3 {
@@ -222,29 +205,19 @@ impl<'a> Sizes<'a> {
     pub(super) fn solid(&self, leg: usize, part: &LegPart) -> Solid {
         let (part, shape) = match *part {
             LegPart::Slider { at, axis, actuated } => {
-                let half_width = self.bodies.radius(MemberKind::Slider, self.design);
-                let shape = SolidShape::Block {
-                    centre: at.extend(self.height(MemberKind::Slider, leg)),
-                    half_size: DVec3::new(self.bodies.slider_half_length(self.design), half_width, half_width),
-                    angle: libm::atan2(axis.y, axis.x),
-                    inner: 0.0,
-                };
-                (carriage(actuated), shape)
+                let centre = at.extend(self.height(MemberKind::Slider, leg));
+                self.carriage(centre, axis, self.bodies.slider_half_length(self.design), actuated)
             }
             LegPart::Tube { from, to } => (Part::Tube, self.bar(leg, MemberKind::TelescopicLeg, from, to, 1.0)),
             // The rod slides inside the tube, so it is drawn thinner.
             LegPart::Rod { from, to } => (Part::Rod, self.bar(leg, MemberKind::TelescopicLeg, from, to, ROD)),
-            LegPart::Carriage { at, axis, on, actuated } => {
-                // As wide as a slider, and shorter, so that carriages on crossing guides stay apart to the eye.
-                let half_width = self.bodies.radius(MemberKind::Slider, self.design);
-                let shape = SolidShape::Block {
-                    centre: at.extend(self.height(on, leg)),
-                    half_size: DVec3::new(self.carriage_half_length(), half_width, half_width),
-                    angle: libm::atan2(axis.y, axis.x),
-                    inner: 0.0,
-                };
-                (carriage(actuated), shape)
-            }
+            // As wide as a slider, and shorter, so that carriages on crossing guides stay apart to the eye.
+            LegPart::Carriage { at, axis, on, actuated } => self.carriage(
+                at.extend(self.height(on, leg)),
+                axis,
+                self.carriage_half_length(),
+                actuated,
+            ),
             LegPart::GuideBar { from, to, kind } => (Part::Guide, self.bar(leg, kind, from, to, 1.0)),
             LegPart::Crank { from, to } => (Part::Crank, self.bar(leg, MemberKind::Crank, from, to, 1.0)),
             LegPart::Link { from, to } => (Part::Link, self.bar(leg, MemberKind::Link, from, to, 1.0)),
@@ -262,38 +235,38 @@ impl<'a> Sizes<'a> {
                 (part, self.pin(leg, at, joins, kind))
             }
         };
-        Solid {
-            part,
-            leg: Some(leg),
-            shape,
-            value: None,
-        }
+        Solid::new(part, Some(leg), shape)
+    }
+
+    /// Returns a slider or carriage along `axis` with the part that it is.
+    fn carriage(&self, centre: DVec3, axis: DVec2, half_length: f64, actuated: bool) -> (Part, SolidShape) {
+        let half_width = self.radius(MemberKind::Slider);
+        let shape = SolidShape::Block {
+            centre,
+            half_size: DVec3::new(half_length, half_width, half_width),
+            angle: libm::atan2(axis.y, axis.x),
+            inner: 0.0,
+        };
+        (if actuated { Part::Slider } else { Part::Carriage }, shape)
     }
 
     /// Returns the platform bar that ends at a leg's `C_i`.
     pub(super) fn platform_bar(&self, leg: usize, c: DVec2, p: DVec2) -> Solid {
-        Solid {
-            part: Part::PlatformBar,
-            leg: Some(leg),
-            shape: self.bar(leg, MemberKind::PlatformBar, c, p, 1.0),
-            value: None,
-        }
+        let shape = self.bar(leg, MemberKind::PlatformBar, c, p, 1.0);
+        Solid::new(Part::PlatformBar, Some(leg), shape)
     }
 }
 
 /// Returns the motor of a revolute joint.
 pub(super) fn motor(body: &UprightBody) -> Solid {
-    Solid {
-        part: Part::ActuatedJoint,
-        leg: Some(body.member.leg),
-        shape: SolidShape::Bar {
-            from: body.at.extend(body.heights[0]),
-            to: body.at.extend(body.heights[1]),
-            radius: body.radius,
-            inner: 0.0,
-        },
-        value: None,
-    }
+    let [from, to] = body.heights.map(|height| body.at.extend(height));
+    let shape = SolidShape::Bar {
+        from,
+        to,
+        radius: body.radius,
+        inner: 0.0,
+    };
+    Solid::new(Part::ActuatedJoint, Some(body.member.leg), shape)
 }
 
 /// Returns the pair of members with the smallest clearance as a line from surface to surface.
@@ -324,14 +297,9 @@ fn nearest(model: &Model, design: &Design, bodies: &Bodies, clearance: &Clearanc
 
 fn frame(scene: &mut Scene, origin: DVec2, angle: f64, length: f64, name: &str) {
     for (part, angle) in [(Part::AxisX, angle), (Part::AxisY, angle + std::f64::consts::FRAC_PI_2)] {
-        scene.lines.push(Line {
-            part,
-            points: vec![flat(origin), flat(origin + unit(angle) * length)],
-        });
+        scene.add_line(part, [flat(origin), flat(origin + unit(angle) * length)]);
     }
     // Beside the origin, in a direction in which no platform bar lies at the home orientation.
-    scene.labels.push(Label {
-        at: flat(origin + unit(angle - std::f64::consts::FRAC_PI_4) * (0.35 * length)),
-        text: name.to_owned(),
-    });
+    let beside = unit(angle - std::f64::consts::FRAC_PI_4) * (0.35 * length);
+    scene.add_label(flat(origin + beside), name);
 }

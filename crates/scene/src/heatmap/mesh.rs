@@ -88,34 +88,8 @@ impl FieldMesh {
     /// their distribution over threads.
     pub(super) fn new(layout: &NodeGrid, surface: &impl Surface) -> Self {
         let count = layout.columns * layout.rows;
-        let nodes: Vec<Option<Sample>> = (0..layout.rows)
-            .into_par_iter()
-            .flat_map_iter(|row| {
-                let first = row * layout.columns;
-                let position = |column: usize| layout.position(first + column.min(layout.columns - 1));
-                let (xs, ys): (Vec<f64>, Vec<f64>) = (0..padded_length(layout.columns))
-                    .map(|column| position(column).into())
-                    .unzip();
-                surface.row(&xs, &ys).into_iter().take(layout.columns)
-            })
-            .collect();
-        let cuts: Vec<Cut> = (0..count)
-            .into_par_iter()
-            .flat_map_iter(|node| {
-                let nodes = &nodes;
-                layout
-                    .neighbours(node)
-                    .into_iter()
-                    .flatten()
-                    .filter_map(move |other| match (nodes[node], nodes[other]) {
-                        (Some(sample), None) => Some((node, other, sample)),
-                        (None, Some(sample)) => Some((other, node, sample)),
-                        _ => None,
-                    })
-                    .map(move |(inner, outer, sample)| cut(layout, surface, inner, outer, sample))
-            })
-            .collect();
-
+        let nodes = samples(layout, surface);
+        let cuts = cuts(layout, surface, &nodes);
         let mut mesh = FieldMesh {
             vertices: Vec::with_capacity(count),
             triangles: Vec::with_capacity(2 * count),
@@ -183,6 +157,32 @@ impl FieldMesh {
             self.outline.push(([first, second], reason));
         }
     }
+}
+
+/// Returns the samples at the nodes.
+fn samples(layout: &NodeGrid, surface: &impl Surface) -> Vec<Option<Sample>> {
+    let row = |row: usize| {
+        let first = row * layout.columns;
+        let position = |column: usize| layout.position(first + column.min(layout.columns - 1));
+        let (xs, ys): (Vec<f64>, Vec<f64>) = (0..padded_length(layout.columns))
+            .map(|column| position(column).into())
+            .unzip();
+        surface.row(&xs, &ys).into_iter().take(layout.columns)
+    };
+    (0..layout.rows).into_par_iter().flat_map_iter(row).collect()
+}
+
+/// Finds the points at which the edge of reach cuts the sides of the grid.
+fn cuts(layout: &NodeGrid, surface: &impl Surface, nodes: &[Option<Sample>]) -> Vec<Cut> {
+    let at_node = |node: usize| {
+        let neighbours = layout.neighbours(node).into_iter().flatten();
+        neighbours.filter_map(move |other| match (nodes[node], nodes[other]) {
+            (Some(sample), None) => Some(cut(layout, surface, node, other, sample)),
+            (None, Some(sample)) => Some(cut(layout, surface, other, node, sample)),
+            _ => None,
+        })
+    };
+    (0..nodes.len()).into_par_iter().flat_map_iter(at_node).collect()
 }
 
 /// Finds the last reachable point on the side from a reachable node to an unreachable one.
