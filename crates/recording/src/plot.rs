@@ -119,12 +119,7 @@ impl Plot {
         if let Some(&[_, y]) = strip.last() {
             strip.push([worst_x, y]);
         }
-        let strips = if self.objectives.len() == 2 {
-            vec![strip]
-        } else {
-            Vec::new()
-        };
-        LineStrips2D::new(strips)
+        LineStrips2D::new((self.objectives.len() == 2).then_some(strip))
             .with_colors([FRONT_COLOR])
             .with_radii([Radius::new_ui_points(1.0)])
             .with_draw_order(35.0)
