@@ -5,9 +5,8 @@ use serde::Serialize;
 use super::dynamics::DynamicsJson;
 use super::format::{AnyError, Format};
 use super::pose::PoseJson;
-use super::prepared::Prepared;
+use super::prepared::{Prepared, kind_name};
 use super::wire::{EvaluationJson, PoseReportJson};
-use kinefront_model::mechanism::JointKind;
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
 use kinefront_scene::{Body, Frame, Linkage};
@@ -141,7 +140,7 @@ impl<'a> BodyJson<'a> {
             frame: (&body.frame).into(),
             height_m: body.height,
             joint: body.joint.map(|joint| JointJson {
-                kind: kind(joint.kind),
+                kind: kind_name(joint.kind),
                 actuated: joint.actuated,
                 value: joint.value,
                 limits: joint.limits,
@@ -182,13 +181,6 @@ struct TourJson {
     actuators: Option<[f64; 3]>,
 }
 
-fn kind(actuator: JointKind) -> &'static str {
-    match actuator {
-        JointKind::Prismatic => "prismatic",
-        JointKind::Revolute => "revolute",
-    }
-}
-
 fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let Prepared {
         study,
@@ -215,7 +207,7 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         at_pose: PoseReportJson::new(&at(pose), strength.as_ref(), dynamics),
         material: (&model.settings().material).into(),
         actuator: ActuatorJson {
-            kind: kind(actuator),
+            kind: kind_name(actuator),
             unit: actuator.unit(),
             stiffness: model.settings().actuators.of(actuator),
         },

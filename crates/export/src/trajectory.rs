@@ -48,32 +48,21 @@ fn samples(subject: &Prepared) -> Result<Vec<TaskSample>, ExportError> {
     followed.map_err(|failure| ExportError::NoMotion(kinefront_scene::text::motion_failure(&failure)))
 }
 
-fn record(sample: &TaskSample) -> [String; HEADINGS.len()] {
-    let (instant, response) = (&sample.instant, &sample.response);
-    let [q1, q2, q3] = sample.actuators;
-    let [v1, v2, v3] = response.speeds;
-    let [a1, a2, a3] = response.accelerations;
-    let [f1, f2, f3] = response.forces;
-    let at = instant.pose.position;
-    let phi_deg = instant.pose.phi.to_degrees();
-    let numbers = [
-        instant.time,
-        at.x,
-        at.y,
-        phi_deg,
-        q1,
-        q2,
-        q3,
-        v1,
-        v2,
-        v3,
-        a1,
-        a2,
-        a3,
-        f1,
-        f2,
-        f3,
+fn record(sample: &TaskSample) -> impl Iterator<Item = String> {
+    let (pose, response) = (&sample.instant.pose, &sample.response);
+    let of_platform = [
+        sample.instant.time,
+        pose.position.x,
+        pose.position.y,
+        pose.phi.to_degrees(),
     ];
+    let of_legs = [
+        sample.actuators,
+        response.speeds,
+        response.accelerations,
+        response.forces,
+    ];
+    let numbers = of_platform.into_iter().chain(of_legs.into_iter().flatten());
     // A table shows no zero with a sign.
     numbers.map(|number| (number + 0.0).to_string())
 }
