@@ -7,7 +7,8 @@ use crate::text::number;
 use kinefront_model::clearance::{Bodies, BodySettings, Clearance, Neighbour, Stack, UprightBody};
 use kinefront_model::evaluation::{Model, PoseScalar, Unreachable};
 use kinefront_model::mechanism::{
-    AnyLeg, CrossSections, Design, JointKind, JointPoint, JointSizes, Leg, LegPart, Manipulator, MemberKind, TravelKind,
+    AnyLeg, CrossSections, Design, JointKind, JointPoint, JointSizes, Leg, LegPart, Manipulator, MemberKind, Posture,
+    TravelKind,
 };
 use kinefront_model::spatial::{LEGS, Pose, unit};
 
@@ -24,17 +25,14 @@ const LEAST: f64 = 0.008;
 /// # Errors
 /// [`Unreachable`], which names the leg that does not reach the pose.
 pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Unreachable> {
-    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
-    let posture = manipulator
-        .posture(pose)
-        .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+    let (manipulator, posture) = posed(model, design, pose)?;
     let bodies = model.bodies_of(design);
     let clearance = bodies.nearest(&manipulator, pose.position, &posture);
     let mut scene = Scene {
         nearest: Some(nearest(model, design, &bodies, &clearance)),
         ..Scene::default()
     };
-    let sizes = Sizes::in_stack(model, design, *bodies.stack());
+    let sizes = Sizes::new(model, design, *bodies.stack());
 
     // The base triangle lies at the height of the members that are attached to it.
     let base = sizes.stack.base_height(design);
@@ -74,6 +72,18 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     }
     join_labels(&mut scene.labels, 0.015 * design.base_radius());
     Ok(scene)
+}
+
+/// Returns the manipulator with its posture at a pose, or the leg that does not reach it.
+pub(super) fn posed(
+    model: &Model,
+    design: &Design,
+    pose: &Pose,
+) -> Result<(Manipulator<AnyLeg>, Posture), Unreachable> {
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
+    let posture = manipulator.posture(pose);
+    let posture = posture.map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+    Ok((manipulator, posture))
 }
 
 /// Returns the height of the labels, above all members \[m\].
@@ -116,12 +126,8 @@ pub(super) struct Sizes<'a> {
 }
 
 impl<'a> Sizes<'a> {
-    pub(super) fn new(model: &'a Model, design: &'a Design) -> Self {
-        Self::in_stack(model, design, model.stack_of(design))
-    }
-
-    /// Does the same with the layers that are known: choosing them takes longer than all else.
-    pub(super) fn in_stack(model: &'a Model, design: &'a Design, stack: Stack) -> Self {
+    /// Returns the sizes with the layers of the design, which a caller may know already: choosing them takes longer than all else.
+    pub(super) fn new(model: &'a Model, design: &'a Design, stack: Stack) -> Self {
         Self {
             bodies: &model.settings().bodies,
             sections: &model.settings().sections,

@@ -3,25 +3,12 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::Sample;
+use super::{Sample, Sampler};
 use kinefront_model::lanes::padded_length;
 use kinefront_model::mechanism::ReachReason;
 
 /// Number of halvings along a side that the edge of reach cuts: an accuracy of 2⁻³² of a cell.
 const HALVINGS: u32 = 32;
-
-/// The surface to mesh: it has a sample at every reachable position.
-pub(super) trait Surface: Sync {
-    /// Returns the samples at many positions; the length of the columns is a multiple of
-    /// [`MAX_LANES`](kinefront_model::lanes::MAX_LANES).
-    fn row(&self, xs: &[f64], ys: &[f64]) -> Vec<Option<Sample>>;
-    /// Returns the sample at one position.
-    fn at(&self, position: DVec2) -> Option<Sample>;
-    /// Returns whether [`Surface::at`] has a sample.
-    fn reaches(&self, position: DVec2) -> bool;
-    /// Returns why a position is unreachable; a position within rounding of the edge may have no reason.
-    fn reason(&self, position: DVec2) -> Option<ReachReason>;
-}
 
 /// Nodes of a grid, row by row from the lower left corner.
 pub(super) struct NodeGrid {
@@ -86,7 +73,7 @@ pub(super) struct FieldMesh {
 impl FieldMesh {
     /// Builds the mesh of the reachable part of `surface`. Rows are computed in parallel; the result does not depend on
     /// their distribution over threads.
-    pub(super) fn new(layout: &NodeGrid, surface: &impl Surface) -> Self {
+    pub(super) fn new(layout: &NodeGrid, surface: &Sampler<'_>) -> Self {
         let count = layout.columns * layout.rows;
         let nodes = samples(layout, surface);
         let cuts = cuts(layout, surface, &nodes);
@@ -160,7 +147,7 @@ impl FieldMesh {
 }
 
 /// Returns the samples at the nodes.
-fn samples(layout: &NodeGrid, surface: &impl Surface) -> Vec<Option<Sample>> {
+fn samples(layout: &NodeGrid, surface: &Sampler<'_>) -> Vec<Option<Sample>> {
     let row = |row: usize| {
         let first = row * layout.columns;
         let position = |column: usize| layout.position(first + column.min(layout.columns - 1));
@@ -173,7 +160,7 @@ fn samples(layout: &NodeGrid, surface: &impl Surface) -> Vec<Option<Sample>> {
 }
 
 /// Finds the points at which the edge of reach cuts the sides of the grid.
-fn cuts(layout: &NodeGrid, surface: &impl Surface, nodes: &[Option<Sample>]) -> Vec<Cut> {
+fn cuts(layout: &NodeGrid, surface: &Sampler<'_>, nodes: &[Option<Sample>]) -> Vec<Cut> {
     let at_node = |node: usize| {
         let neighbours = layout.neighbours(node).into_iter().flatten();
         neighbours.filter_map(move |other| match (nodes[node], nodes[other]) {
@@ -186,7 +173,7 @@ fn cuts(layout: &NodeGrid, surface: &impl Surface, nodes: &[Option<Sample>]) -> 
 }
 
 /// Finds the last reachable point on the side from a reachable node to an unreachable one.
-fn cut(layout: &NodeGrid, surface: &impl Surface, inner: usize, outer: usize, sample: Sample) -> Cut {
+fn cut(layout: &NodeGrid, surface: &Sampler<'_>, inner: usize, outer: usize, sample: Sample) -> Cut {
     let (mut inside, mut outside) = (layout.position(inner), layout.position(outer));
     for _ in 0..HALVINGS {
         let position = 0.5 * (inside + outside);

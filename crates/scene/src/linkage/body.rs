@@ -7,7 +7,7 @@ use kinefront_model::dynamics::Payload;
 use kinefront_model::mechanism::JointKind;
 
 /// A planar frame, given in the base frame or in the frame of another body.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Frame {
     /// Origin \[m\].
     pub origin: DVec2,
@@ -47,7 +47,7 @@ pub struct MassBar {
 }
 
 /// A rigid body.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Body {
     /// Name, such as `leg1_crank` or `platform`.
     pub name: String,

@@ -7,12 +7,11 @@ use glam::DVec2;
 pub use body::{Body, Frame, Joint, MassBar};
 
 use super::Solid;
-use super::manipulator::{Sizes, motor};
-use kinefront_model::dynamics::Payload;
+use super::manipulator::{Sizes, motor, posed};
 use kinefront_model::evaluation::{Model, Unreachable};
 use kinefront_model::mechanism::{
     AnyLeg, ChainPosture, CrossSection, Design, JointKind, JointPart, JointPoint, LegBody, LegPart, LegPosture,
-    Manipulator, MemberKind,
+    MemberKind,
 };
 use kinefront_model::spatial::{LEGS, Pose, Rotation};
 
@@ -67,16 +66,13 @@ impl Linkage {
 /// # Errors
 /// [`Unreachable`], which names the leg that does not reach the pose.
 pub fn linkage(model: &Model, design: &Design, pose: &Pose) -> Result<Linkage, Unreachable> {
-    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
-    let posture = manipulator
-        .posture(pose)
-        .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+    let (manipulator, posture) = posed(model, design, pose)?;
     let arranged = model.bodies_of(design);
     let kinds = design.architecture().chain().joints;
     let builder = Builder {
         model,
         design,
-        sizes: Sizes::in_stack(model, design, *arranged.stack()),
+        sizes: Sizes::new(model, design, *arranged.stack()),
         has_mounts: design.architecture().driven() == 2 && kinds[2] == JointKind::Revolute,
     };
     let mut bodies: Vec<Body> = Vec::new();
@@ -184,9 +180,8 @@ impl Builder<'_> {
             height: self.sizes.height(body.kind, index),
             joint: Some(joint),
             bars: bars.collect(),
-            joints: Vec::new(),
-            payload: Payload::default(),
             solids: body.parts.iter().map(solid).collect(),
+            ..Body::default()
         }
     }
 
@@ -244,9 +239,7 @@ impl Builder<'_> {
                 limits: None,
             }),
             bars: vec![self.platform_bar(&frame, [at, pose.position])],
-            joints: Vec::new(),
-            payload: Payload::default(),
-            solids: Vec::new(),
+            ..Body::default()
         }
     }
 
@@ -262,14 +255,12 @@ impl Builder<'_> {
         };
         Body {
             name: "platform".to_owned(),
-            parent: None,
             frame,
             height: self.sizes.height(MemberKind::PlatformBar, 0),
-            joint: None,
             bars: ends.map(|end| self.platform_bar(&frame, [end, pose.position])).to_vec(),
-            joints: Vec::new(),
             payload: self.model.settings().dynamics.payload,
             solids: (0..LEGS).map(solid).collect(),
+            ..Body::default()
         }
     }
 
