@@ -11,7 +11,7 @@ use json::validation::Checked::Valid;
 use json::validation::USize64;
 use json::{Accessor, Index, Node};
 
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::Prepared;
 use kinefront_model::spatial::unit;
 use kinefront_scene::palette;
@@ -23,9 +23,7 @@ pub(super) const FORMAT: Format = Format {
     name: "glTF",
     title: "glTF, for viewers and CAD",
     lost: Some("joints, masses and actuators; the file contains only geometry and an animation"),
-    is_text: false,
-    needs_bars: false,
-    joints_from_zero: false,
+    contents: Contents::Binary,
     write,
 };
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::dynamics::DynamicsJson;
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::pose::PoseJson;
 use super::prepared::{Prepared, kind_name};
 use super::wire::{EvaluationJson, PoseReportJson};
@@ -17,9 +17,7 @@ pub(super) const FORMAT: Format = Format {
     name: "JSON",
     title: "JSON, all data",
     lost: None,
-    is_text: true,
-    needs_bars: false,
-    joints_from_zero: false,
+    contents: Contents::Text,
     write,
 };
 

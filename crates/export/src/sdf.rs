@@ -1,6 +1,6 @@
 //! SDF: a link for every body and a joint for every joint, including the joints that close the loops.
 
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::{Prepared, inertia_elements, inertial, joint_axis, joint_name, kind_name, place, rgba, text};
 use super::xml::{Element, numbers};
 use kinefront_model::mechanism::JointKind;
@@ -15,9 +15,7 @@ pub(super) const FORMAT: Format = Format {
         "the stiffness of the actuators and the inertia of their rotors, and which joints are actuated; Gazebo's default physics engine does not close loops, that \
          of Gazebo Classic does",
     ),
-    is_text: true,
-    needs_bars: true,
-    joints_from_zero: true,
+    contents: Contents::Simulator { joints_from_zero: true },
     write,
 };
 

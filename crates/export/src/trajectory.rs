@@ -1,7 +1,7 @@
 //! The motion of a study in equal steps of time: what a controller of the actuators takes as its reference.
 
 use super::ExportError;
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::Prepared;
 use kinefront_model::evaluation::TaskSample;
 
@@ -11,9 +11,7 @@ pub(super) const FORMAT: Format = Format {
     name: "the reference trajectory",
     title: "CSV, reference trajectory of the motion",
     lost: None,
-    is_text: true,
-    needs_bars: false,
-    joints_from_zero: false,
+    contents: Contents::Text,
     write,
 };
 

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::{Prepared, inertia_elements, inertial, joint_axis, joint_name, kind_name, place, rgba, text};
 use super::xml::{Element, numbers};
 use kinefront_model::mechanism::JointKind;
@@ -17,9 +17,7 @@ pub(super) const FORMAT: Format = Format {
         "the closed loops (URDF describes trees, so the platform is attached to leg 1, and legs 2 and 3 end free at C2 and C3); the \
          stiffness of the actuators and the inertia of their rotors, and which joints are actuated; the effort and velocity limits are placeholders",
     ),
-    is_text: true,
-    needs_bars: true,
-    joints_from_zero: true,
+    contents: Contents::Simulator { joints_from_zero: true },
     write,
 };
 

@@ -9,7 +9,7 @@ mod solids;
 use glam::DVec3;
 
 use self::records::{File, Placement, list, real, string};
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::Prepared;
 use kinefront_model::spatial::unit;
 use kinefront_scene::{Part, Solid, palette};
@@ -20,9 +20,7 @@ pub(super) const FORMAT: Format = Format {
     name: "STEP",
     title: "STEP, for CAD",
     lost: Some("joints, masses and actuators; the bodies stand where they are at the exported pose"),
-    is_text: true,
-    needs_bars: false,
-    joints_from_zero: false,
+    contents: Contents::Text,
     write,
 };
 
