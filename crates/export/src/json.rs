@@ -9,7 +9,7 @@ use super::prepared::{Prepared, kind_name};
 use super::wire::{EvaluationJson, PoseReportJson};
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
-use kinefront_scene::{Body, Frame, Linkage};
+use kinefront_scene::{Body, Linkage};
 
 pub(super) const FORMAT: Format = Format {
     key: "json",
@@ -71,16 +71,6 @@ struct FrameJson {
     angle_rad: f64,
 }
 
-impl From<&Frame> for FrameJson {
-    fn from(frame: &Frame) -> Self {
-        Self {
-            x_m: frame.origin.x,
-            y_m: frame.origin.y,
-            angle_rad: frame.angle,
-        }
-    }
-}
-
 #[derive(Debug, Serialize)]
 struct JointJson {
     kind: &'static str,
@@ -135,7 +125,11 @@ impl<'a> BodyJson<'a> {
                 Some(parent) => Some(&linkage.bodies[parent].name),
                 None => body.joint.map(|_| "base"),
             },
-            frame: (&body.frame).into(),
+            frame: FrameJson {
+                x_m: body.frame.origin.x,
+                y_m: body.frame.origin.y,
+                angle_rad: body.frame.angle,
+            },
             height_m: body.height,
             joint: body.joint.map(|joint| JointJson {
                 kind: kind_name(joint.kind),

@@ -32,9 +32,7 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
             .children(subject.base.iter().enumerate().map(visual)),
     );
     model.push(fixed_joint("base_to_world", "world", "base"));
-    for body in &linkage.bodies {
-        model.push(link(body));
-    }
+    model = model.children(linkage.bodies.iter().map(link));
     for body in &linkage.bodies {
         // The platform has no parent joint; only the closures connect it to the legs.
         if let Some(joint) = body.joint {

@@ -62,11 +62,8 @@ fn draw_design(
 ) -> Result<(), RecordingError> {
     let (study, model) = (study.study(), study.model());
     let writer = RecordingWriter::create(path, heading)?;
-    let proof = study
-        .workspace
-        .certify
-        .then(|| workspace_proof(model, evaluation, &|| true))
-        .flatten();
+    let prove = || workspace_proof(model, evaluation, &|| true);
+    let proof = study.workspace.certify.then(prove).flatten();
     let certified = proof
         .as_ref()
         .map(|proof| CertifiedWorkspace::new(&proof.certificate, &proof.claim));

@@ -211,11 +211,10 @@ impl PlotGrid {
 
     /// Returns the legend of the colours, in the upper left corner.
     pub fn legend(&self, architectures: &[Architecture]) -> Points2D {
-        let [r, g, b] = INFEASIBLE_COLOR;
         let entries: Vec<(String, Color)> = architectures
             .iter()
             .map(|&architecture| (architecture.to_string(), colors::architecture(architecture)))
-            .chain([("infeasible".to_owned(), Color::from_rgb(r, g, b))])
+            .chain([("infeasible".to_owned(), colors::rgb(INFEASIBLE_COLOR))])
             .collect();
         Points2D::new((0..entries.len()).map(|k| self.at(0.08, 0.96 - 0.085 * k as f32)))
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(5.0), entries.len()))

@@ -293,10 +293,7 @@ impl Report {
                 let range = self.study.workspace.rotation_range_deg;
                 let png = picture::picture(model, evaluation, range, [width, height])
                     .and_then(|pixels| chart::pixels_to_png(width, height, &pixels))
-                    .map_err(|cause| ReportError::Figure {
-                        name: name.clone(),
-                        cause,
-                    })?;
+                    .map_err(ReportError::of(&name))?;
                 Ok(DesignPicture {
                     name,
                     caption,

@@ -4,11 +4,10 @@ use glam::{DVec2, DVec3};
 
 use super::{Label, Nearest, Part, Scene, Solid, SolidShape, surroundings};
 use crate::text::number;
-use kinefront_model::clearance::{Bodies, BodySettings, Clearance, Neighbour, Stack, UprightBody};
-use kinefront_model::evaluation::{Model, PoseScalar, Unreachable};
+use kinefront_model::clearance::{Bodies, Clearance, Neighbour, Stack, UprightBody};
+use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar, Unreachable};
 use kinefront_model::mechanism::{
-    AnyLeg, CrossSections, Design, JointKind, JointPoint, JointSizes, Leg, LegPart, Manipulator, MemberKind, Posture,
-    TravelKind,
+    AnyLeg, Design, JointKind, JointPoint, Leg, LegPart, Manipulator, MemberKind, Posture, TravelKind,
 };
 use kinefront_model::spatial::{LEGS, Pose, unit};
 
@@ -118,10 +117,8 @@ fn flat(point: DVec2) -> DVec3 {
 /// Sizes and layer heights of the members of a design \[m\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes<'a> {
-    bodies: &'a BodySettings,
-    sections: &'a CrossSections,
+    settings: &'a ModelSettings,
     design: &'a Design,
-    joints: &'a JointSizes,
     stack: Stack,
 }
 
@@ -129,10 +126,8 @@ impl<'a> Sizes<'a> {
     /// Returns the sizes with the layers of the design, which a caller may know already: choosing them takes longer than all else.
     pub(super) fn new(model: &'a Model, design: &'a Design, stack: Stack) -> Self {
         Self {
-            bodies: &model.settings().bodies,
-            sections: &model.settings().sections,
+            settings: model.settings(),
             design,
-            joints: &model.settings().joint_sizes,
             stack,
         }
     }
@@ -144,14 +139,14 @@ impl<'a> Sizes<'a> {
 
     /// Returns the radius of the bars of a kind of member.
     pub(super) fn radius(&self, kind: MemberKind) -> f64 {
-        self.bodies.radius(kind, self.design)
+        self.settings.bodies.radius(kind, self.design)
     }
 
     fn bar(&self, leg: usize, kind: MemberKind, from: DVec2, to: DVec2, fraction: f64) -> SolidShape {
         let (z, outer) = (self.height(kind, leg), self.radius(kind));
         let section = match kind {
-            MemberKind::PlatformBar => &self.sections.platform,
-            _ => &self.sections.legs,
+            MemberKind::PlatformBar => &self.settings.sections.platform,
+            _ => &self.settings.sections.legs,
         };
         let [radius, inner] = [outer, section.inner_radius(outer)].map(|size| fraction * size);
         if section.is_square() {
@@ -173,8 +168,12 @@ impl<'a> Sizes<'a> {
 
     /// Returns half the length of a carriage on a guide that moves.
     pub(super) fn carriage_half_length(&self) -> f64 {
-        let half_width = self.bodies.radius(MemberKind::Slider, self.design);
-        (self.bodies.slider_half_length(self.design) / 3.0).max(half_width)
+        let half_width = self.radius(MemberKind::Slider);
+        (self.slider_half_length() / 3.0).max(half_width)
+    }
+
+    fn slider_half_length(&self) -> f64 {
+        self.settings.bodies.slider_half_length(self.design)
     }
 
     /// Returns a joint: its pin passes through the members it joins and is as thick as the thinner one, or thicker if it would otherwise be
@@ -182,13 +181,11 @@ impl<'a> Sizes<'a> {
     fn pin(&self, leg: usize, at: DVec2, joins: [MemberKind; 2], kind: JointKind) -> SolidShape {
         let least = LEAST * self.design.base_radius();
         let ends = joins.map(|kind| {
-            let out = (PIN * self.bodies.radius(kind, self.design)).max(1.4 * least);
+            let out = (PIN * self.radius(kind)).max(1.4 * least);
             [self.height(kind, leg) - out, self.height(kind, leg) + out]
         });
         let bars = joins.into_iter().filter(|&kind| kind != MemberKind::Slider);
-        let radius = bars.fold(f64::INFINITY, |least, kind| {
-            least.min(self.bodies.radius(kind, self.design))
-        });
+        let radius = bars.fold(f64::INFINITY, |least, kind| least.min(self.radius(kind)));
         let point = match joins {
             [_, MemberKind::PlatformBar] | [MemberKind::PlatformBar, _] => JointPoint::C,
             [first, second] if first == second => JointPoint::A,
@@ -196,7 +193,7 @@ impl<'a> Sizes<'a> {
         };
         let is_revolute = kind == JointKind::Revolute;
         let body = is_revolute
-            .then(|| self.stack.joint(leg, point, self.joints, self.design))
+            .then(|| self.stack.joint(leg, point, &self.settings.joint_sizes, self.design))
             .flatten();
         let [low, high, thick] = body.unwrap_or([f64::INFINITY, f64::NEG_INFINITY, 0.0]);
         SolidShape::Bar {
@@ -212,7 +209,7 @@ impl<'a> Sizes<'a> {
         let (part, shape) = match *part {
             LegPart::Slider { at, axis, actuated } => {
                 let centre = at.extend(self.height(MemberKind::Slider, leg));
-                self.carriage(centre, axis, self.bodies.slider_half_length(self.design), actuated)
+                self.carriage(centre, axis, self.slider_half_length(), actuated)
             }
             LegPart::Tube { from, to } => (Part::Tube, self.bar(leg, MemberKind::TelescopicLeg, from, to, 1.0)),
             // The rod slides inside the tube, so it is drawn thinner.

@@ -70,30 +70,20 @@ impl SolidShape {
     pub fn seen_from(&self, origin: DVec2, angle: f64) -> SolidShape {
         let back = Rotation::new(-angle);
         let place = |point: DVec3| back.apply(point.truncate() - origin).extend(point.z);
-        match *self {
-            SolidShape::Bar {
-                from,
-                to,
-                radius,
-                inner,
-            } => SolidShape::Bar {
-                from: place(from),
-                to: place(to),
-                radius,
-                inner,
-            },
+        let mut seen = *self;
+        match &mut seen {
+            SolidShape::Bar { from, to, .. } => {
+                *from = place(*from);
+                *to = place(*to);
+            }
             SolidShape::Block {
-                centre,
-                half_size,
-                angle: turned,
-                inner,
-            } => SolidShape::Block {
-                centre: place(centre),
-                half_size,
-                angle: turned - angle,
-                inner,
-            },
+                centre, angle: turned, ..
+            } => {
+                *centre = place(*centre);
+                *turned -= angle;
+            }
         }
+        seen
     }
 }
 

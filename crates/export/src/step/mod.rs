@@ -38,11 +38,8 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let mut components = Vec::new();
     let base = ("base", Placement::ORIGIN, &subject.base[..]);
     let bodies = subject.linkage.bodies.iter().map(|body| {
-        let place = Placement {
-            origin: body.frame.origin.extend(0.0) * MM,
-            z: DVec3::Z,
-            x: unit(body.frame.angle).extend(0.0),
-        };
+        let axis = unit(body.frame.angle).extend(0.0);
+        let place = Placement::at(body.frame.origin.extend(0.0) * MM, DVec3::Z, axis);
         (body.name.as_str(), place, &body.solids[..])
     });
     for (name, place, solids) in std::iter::once(base).chain(bodies) {

@@ -13,11 +13,11 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    pub(super) const ORIGIN: Self = Self {
-        origin: DVec3::ZERO,
-        z: DVec3::Z,
-        x: DVec3::X,
-    };
+    pub(super) const ORIGIN: Self = Self::at(DVec3::ZERO, DVec3::Z, DVec3::X);
+
+    pub(super) const fn at(origin: DVec3, z: DVec3, x: DVec3) -> Self {
+        Self { origin, z, x }
+    }
 
     /// Returns the point at coordinates across the z axis.
     pub(super) fn point(&self, at: DVec2, along: f64) -> DVec3 {

@@ -34,12 +34,9 @@ impl Prism {
                 let axis = (to - from).normalize();
                 // Bars lie in the plane of motion, pins are along z.
                 let is_in_plane = axis.truncate().length() > 0.5;
+                let across = if is_in_plane { DVec3::Z } else { DVec3::X };
                 Self {
-                    place: Placement {
-                        origin: from * MM,
-                        z: axis,
-                        x: if is_in_plane { DVec3::Z } else { DVec3::X },
-                    },
+                    place: Placement::at(from * MM, axis, across),
                     length: from.distance(to) * MM,
                     outer: Profile::Circle(radius * MM),
                     bore: (inner > 0.0).then_some(Profile::Circle(inner * MM)),
@@ -58,11 +55,7 @@ impl Prism {
                 };
                 Self {
                     // The x axis of the profile is z, so that its y axis is across the block.
-                    place: Placement {
-                        origin: (centre - axis * half_size.x) * MM,
-                        z: axis,
-                        x: DVec3::Z,
-                    },
+                    place: Placement::at((centre - axis * half_size.x) * MM, axis, DVec3::Z),
                     length: 2.0 * half_size.x * MM,
                     outer: rectangle(half_size.z, half_size.y),
                     bore: (inner > 0.0).then(|| rectangle(inner, inner)),
@@ -184,11 +177,7 @@ impl File {
                     let along = (b - a).normalize();
                     let outwards = along.cross(prism.place.z);
                     let normal = if is_bore { -outwards } else { outwards };
-                    let at = self.placement(&Placement {
-                        origin: a,
-                        z: normal,
-                        x: along,
-                    });
+                    let at = self.placement(&Placement::at(a, normal, along));
                     (self.add(format!("PLANE('',#{at})")), true)
                 }
             };

@@ -64,10 +64,7 @@ impl Figures {
         chart: Chart,
     ) -> Result<(), ReportError> {
         let name = name.into();
-        let svg = chart.svg().map_err(|cause| ReportError::Figure {
-            name: name.clone(),
-            cause,
-        })?;
+        let svg = chart.svg().map_err(ReportError::of(&name))?;
         let beyond = match chart.beyond {
             0 => String::new(),
             count => format!(" Designs outside the range of the axes: {count}."),

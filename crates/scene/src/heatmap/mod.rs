@@ -73,11 +73,8 @@ impl Heatmap {
     /// Returns the smallest and the largest value; `None` if no position is reachable.
     pub fn range(&self) -> Option<[f64; 2]> {
         let first = *self.values.first()?;
-        Some(
-            self.values
-                .iter()
-                .fold([first; 2], |[low, high], &value| [low.min(value), high.max(value)]),
-        )
+        let widened = |[low, high]: [f64; 2], value: &f64| [low.min(*value), high.max(*value)];
+        Some(self.values.iter().fold([first; 2], widened))
     }
 }
 
