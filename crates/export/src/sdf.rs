@@ -55,13 +55,8 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         model.push(if closure.is_rigid {
             fixed_joint(&name, parent, &platform.name)
         } else {
-            joint_element(
-                &name,
-                parent,
-                &platform.name,
-                passive,
-                Some(closure.on_platform.to_array()),
-            )
+            let at = Some(closure.on_platform.to_array());
+            joint_element(&name, parent, &platform.name, passive, at)
         });
     }
     Element::new("sdf")
