@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
 
 use super::pose::PoseJson;
 use kinefront_model::certify::MotionCertificate;
-use kinefront_model::dynamics::{DriveCatalogue, DynamicsReport, Motion};
+use kinefront_model::dynamics::{DriveCatalogue, DynamicsReport, Motion, TaskInstant};
 use kinefront_model::evaluation::{OverWorkspace, PosedDynamics, SelectedDrive, TaskOutcome, TaskSample};
 
 /// Frequencies, masses, gains and errors in the output of `kinefront pose --json`.
@@ -253,78 +254,55 @@ impl From<&MotionCertificate> for MotionProofJson {
     }
 }
 
+/// Names of the pose of a sample with its rates and accelerations, and of the values, speeds, accelerations, forces and powers of the three
+/// actuators.
+const SAMPLED: [&str; 24] = [
+    "x", "y", "phi_deg", "vx", "vy", "omega", "ax", "ay", "alpha", "q1", "q2", "q3", "qd1", "qd2", "qd3", "qdd1",
+    "qdd2", "qdd3", "tau1", "tau2", "tau3", "p1", "p2", "p3",
+];
+
 /// A sample of a motion, as a row of the table and an object of JSON. Actuators are in metres and newtons, or in radians and newton
 /// metres.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub struct TaskRow {
-    t_s: f64,
+    time: f64,
     /// From 1.
     piece: usize,
-    x: f64,
-    y: f64,
-    phi_deg: f64,
-    vx: f64,
-    vy: f64,
-    omega: f64,
-    ax: f64,
-    ay: f64,
-    alpha: f64,
-    q1: f64,
-    q2: f64,
-    q3: f64,
-    qd1: f64,
-    qd2: f64,
-    qd3: f64,
-    qdd1: f64,
-    qdd2: f64,
-    qdd3: f64,
-    tau1: f64,
-    tau2: f64,
-    tau3: f64,
-    p1: f64,
-    p2: f64,
-    p3: f64,
+    sampled: Vec<f64>,
 }
 
 impl From<&TaskSample> for TaskRow {
     fn from(sample: &TaskSample) -> Self {
-        let (instant, response) = (&sample.instant, &sample.response);
+        let TaskInstant { pose, motion, .. } = &sample.instant;
+        let response = &sample.response;
+        let of_pose = [pose.position.x, pose.position.y, pose.phi.to_degrees()];
+        let others = [
+            motion.twist,
+            motion.acceleration,
+            sample.actuators,
+            response.speeds,
+            response.accelerations,
+            response.forces,
+            sample.powers(),
+        ];
         // A table shows no zero with a sign.
-        let plain = |values: [f64; 3]| values.map(|value| value + 0.0);
-        let [vx, vy, omega] = plain(instant.motion.twist);
-        let [ax, ay, alpha] = plain(instant.motion.acceleration);
-        let [q1, q2, q3] = plain(sample.actuators);
-        let [qd1, qd2, qd3] = plain(response.speeds);
-        let [qdd1, qdd2, qdd3] = plain(response.accelerations);
-        let [tau1, tau2, tau3] = plain(response.forces);
-        let [p1, p2, p3] = plain(sample.powers());
+        let plain = others.into_iter().flatten().map(|value| value + 0.0);
         Self {
-            t_s: instant.time,
-            piece: instant.piece + 1,
-            x: instant.pose.position.x,
-            y: instant.pose.position.y,
-            phi_deg: instant.pose.phi.to_degrees(),
-            vx,
-            vy,
-            omega,
-            ax,
-            ay,
-            alpha,
-            q1,
-            q2,
-            q3,
-            qd1,
-            qd2,
-            qd3,
-            qdd1,
-            qdd2,
-            qdd3,
-            tau1,
-            tau2,
-            tau3,
-            p1,
-            p2,
-            p3,
+            time: sample.instant.time,
+            piece: sample.instant.piece + 1,
+            sampled: of_pose.into_iter().chain(plain).collect(),
         }
+    }
+}
+
+impl Serialize for TaskRow {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut row = serializer.serialize_struct("TaskRow", 2 + SAMPLED.len())?;
+        row.serialize_field("t_s", &self.time)?;
+        row.serialize_field("piece", &self.piece)?;
+        for (name, value) in SAMPLED.into_iter().zip(&self.sampled) {
+            row.serialize_field(name, value)?;
+        }
+        row.end()
     }
 }

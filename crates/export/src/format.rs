@@ -16,12 +16,22 @@ pub struct Format {
     pub(super) name: &'static str,
     pub(super) title: &'static str,
     pub(super) lost: Option<&'static str>,
-    pub(super) is_text: bool,
-    /// Whether the format requires masses and shapes of all bodies.
-    pub(super) needs_bars: bool,
-    /// Whether joint values count from the exported pose.
-    pub(super) joints_from_zero: bool,
+    pub(super) contents: Contents,
     pub(super) write: fn(&Prepared) -> Result<Vec<u8>, AnyError>,
+}
+
+/// What a file contains.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Contents {
+    /// Numbers as bytes.
+    Binary,
+    /// Text.
+    Text,
+    /// Text for a simulator, which requires masses and shapes of all bodies.
+    Simulator {
+        /// Whether joint values count from the exported pose.
+        joints_from_zero: bool,
+    },
 }
 
 impl fmt::Debug for Format {
@@ -61,7 +71,7 @@ impl Format {
 
     /// Returns whether the format is a text.
     pub fn is_text(&self) -> bool {
-        self.is_text
+        self.contents != Contents::Binary
     }
 
     /// Returns the display name.
@@ -98,7 +108,7 @@ impl Format {
         if payload > 0.0 {
             words += &format!(" The platform carries the payload of {payload} kg.");
         }
-        if self.joints_from_zero {
+        if matches!(self.contents, Contents::Simulator { joints_from_zero: true }) {
             words += "\nJoint values are relative to the exported pose, at which they are 0.";
         }
         if let Some(lost) = self.lost {

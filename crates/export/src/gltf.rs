@@ -7,11 +7,12 @@ use ::gltf::binary::{Glb, Header};
 use ::gltf::json;
 use glam::DVec3;
 use json::accessor::{ComponentType, GenericComponentType, Type};
+use json::buffer::Target;
 use json::validation::Checked::Valid;
 use json::validation::USize64;
 use json::{Accessor, Index, Node};
 
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::Prepared;
 use kinefront_model::spatial::unit;
 use kinefront_scene::palette;
@@ -23,9 +24,7 @@ pub(super) const FORMAT: Format = Format {
     name: "glTF",
     title: "glTF, for viewers and CAD",
     lost: Some("joints, masses and actuators; the file contains only geometry and an animation"),
-    is_text: false,
-    needs_bars: false,
-    joints_from_zero: false,
+    contents: Contents::Binary,
     write,
 };
 
@@ -118,14 +117,6 @@ fn rotation(angle: f64) -> [f32; 4] {
     [0.0, 0.0, sin as f32, cos as f32]
 }
 
-/// Use of the numbers of an accessor.
-#[derive(Clone, Copy)]
-enum Use {
-    Vertices,
-    Indices,
-    Animation,
-}
-
 /// The file being assembled: its JSON description and its binary numbers.
 #[derive(Default)]
 struct File {
@@ -135,19 +126,22 @@ struct File {
 }
 
 impl File {
-    /// Adds numbers of 4 bytes each and returns an accessor of `count` elements.
-    fn accessor(&mut self, bytes: &[u8], count: usize, component: ComponentType, kind: Type, purpose: Use) -> Accessor {
+    /// Adds numbers of 4 bytes each and returns an accessor of `count` elements; `target` says what of a mesh they are, if they are of one.
+    fn accessor(
+        &mut self,
+        bytes: &[u8],
+        count: usize,
+        component: ComponentType,
+        kind: Type,
+        target: Option<Target>,
+    ) -> Accessor {
         let view = self.root.push(json::buffer::View {
             buffer: Index::new(0),
             byte_length: USize64::from(bytes.len()),
             byte_offset: Some(USize64::from(self.numbers.len())),
             byte_stride: None,
             name: None,
-            target: match purpose {
-                Use::Vertices => Some(Valid(json::buffer::Target::ArrayBuffer)),
-                Use::Indices => Some(Valid(json::buffer::Target::ElementArrayBuffer)),
-                Use::Animation => None,
-            },
+            target: target.map(Valid),
             extensions: None,
             extras: Default::default(),
         });
@@ -173,11 +167,11 @@ impl File {
         &mut self,
         values: &[[f32; N]],
         kind: Type,
-        purpose: Use,
+        target: Option<Target>,
         bounds: bool,
     ) -> Index<Accessor> {
         let bytes: Vec<u8> = values.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
-        let mut accessor = self.accessor(&bytes, values.len(), ComponentType::F32, kind, purpose);
+        let mut accessor = self.accessor(&bytes, values.len(), ComponentType::F32, kind, target);
         if bounds {
             let fold = |pick: fn(f32, f32) -> f32, start: f32| {
                 let folded = values.iter().fold([start; N], |found, value| {
@@ -193,7 +187,7 @@ impl File {
 
     fn points(&mut self, points: &[DVec3]) -> Index<Accessor> {
         let values: Vec<[f32; 3]> = points.iter().map(|point| point.as_vec3().to_array()).collect();
-        self.floats(&values, Type::Vec3, Use::Vertices, true)
+        self.floats(&values, Type::Vec3, Some(Target::ArrayBuffer), true)
     }
 
     /// Adds solids as a mesh with one surface for each kind of part, so that each has its own colour.
@@ -214,7 +208,7 @@ impl File {
             .iter()
             .map(|normal| normal.as_vec3().normalize_or_zero().to_array())
             .collect();
-        let normals = self.floats(&normals, Type::Vec3, Use::Vertices, false);
+        let normals = self.floats(&normals, Type::Vec3, Some(Target::ArrayBuffer), false);
         let indices: Vec<u8> = mesh
             .triangles
             .iter()
@@ -226,7 +220,7 @@ impl File {
             3 * mesh.triangles.len(),
             ComponentType::U32,
             Type::Scalar,
-            Use::Indices,
+            Some(Target::ElementArrayBuffer),
         );
         let indices = self.root.push(indices);
         json::mesh::Primitive {
@@ -314,7 +308,7 @@ impl File {
         let times: Vec<[f32; 1]> = (0..frames.len())
             .map(|step| [(TOUR_SECONDS * step as f64 / last) as f32])
             .collect();
-        let input = self.floats(&times, Type::Scalar, Use::Animation, true);
+        let input = self.floats(&times, Type::Scalar, None, true);
         let (mut channels, mut samplers) = (Vec::new(), Vec::new());
         for (body, &node) in nodes.iter().enumerate() {
             let places: Vec<[f32; 3]> = frames.iter().map(|step| translation(&step[body])).collect();
@@ -329,11 +323,11 @@ impl File {
                 .collect();
             let outputs = [
                 (
-                    self.floats(&places, Type::Vec3, Use::Animation, false),
+                    self.floats(&places, Type::Vec3, None, false),
                     json::animation::Property::Translation,
                 ),
                 (
-                    self.floats(&turns, Type::Vec4, Use::Animation, false),
+                    self.floats(&turns, Type::Vec4, None, false),
                     json::animation::Property::Rotation,
                 ),
             ];

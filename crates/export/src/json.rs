@@ -3,14 +3,13 @@
 use serde::Serialize;
 
 use super::dynamics::DynamicsJson;
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::pose::PoseJson;
-use super::prepared::Prepared;
+use super::prepared::{Prepared, kind_name};
 use super::wire::{EvaluationJson, PoseReportJson};
-use kinefront_model::mechanism::JointKind;
 use kinefront_model::spatial::Pose;
 use kinefront_model::stiffness::Material;
-use kinefront_scene::{Body, Frame, Linkage};
+use kinefront_scene::{Body, Linkage};
 
 pub(super) const FORMAT: Format = Format {
     key: "json",
@@ -18,9 +17,7 @@ pub(super) const FORMAT: Format = Format {
     name: "JSON",
     title: "JSON, all data",
     lost: None,
-    is_text: true,
-    needs_bars: false,
-    joints_from_zero: false,
+    contents: Contents::Text,
     write,
 };
 
@@ -72,16 +69,6 @@ struct FrameJson {
     x_m: f64,
     y_m: f64,
     angle_rad: f64,
-}
-
-impl From<&Frame> for FrameJson {
-    fn from(frame: &Frame) -> Self {
-        Self {
-            x_m: frame.origin.x,
-            y_m: frame.origin.y,
-            angle_rad: frame.angle,
-        }
-    }
 }
 
 #[derive(Debug, Serialize)]
@@ -138,10 +125,14 @@ impl<'a> BodyJson<'a> {
                 Some(parent) => Some(&linkage.bodies[parent].name),
                 None => body.joint.map(|_| "base"),
             },
-            frame: (&body.frame).into(),
+            frame: FrameJson {
+                x_m: body.frame.origin.x,
+                y_m: body.frame.origin.y,
+                angle_rad: body.frame.angle,
+            },
             height_m: body.height,
             joint: body.joint.map(|joint| JointJson {
-                kind: kind(joint.kind),
+                kind: kind_name(joint.kind),
                 actuated: joint.actuated,
                 value: joint.value,
                 limits: joint.limits,
@@ -182,13 +173,6 @@ struct TourJson {
     actuators: Option<[f64; 3]>,
 }
 
-fn kind(actuator: JointKind) -> &'static str {
-    match actuator {
-        JointKind::Prismatic => "prismatic",
-        JointKind::Revolute => "revolute",
-    }
-}
-
 fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     let Prepared {
         study,
@@ -215,7 +199,7 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
         at_pose: PoseReportJson::new(&at(pose), strength.as_ref(), dynamics),
         material: (&model.settings().material).into(),
         actuator: ActuatorJson {
-            kind: kind(actuator),
+            kind: kind_name(actuator),
             unit: actuator.unit(),
             stiffness: model.settings().actuators.of(actuator),
         },

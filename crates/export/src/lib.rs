@@ -42,6 +42,7 @@ use kinefront_study::PreparedStudy;
 pub use assembly_modes::AssemblyModesJson;
 pub use certificate::{CertificateJson, Claim};
 pub use dynamics::{DynamicsJson, MotionProofJson, TaskJson, TaskRow};
+use format::Contents;
 pub use format::Format;
 pub use pose::PoseJson;
 #[cfg(feature = "parquet")]
@@ -121,7 +122,8 @@ pub struct ExportSubject<'a> {
 pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, ExportError> {
     let prepared = Prepared::new(subject)?;
     let design = &subject.evaluation.design;
-    if format.needs_bars && !(design.leg_bar_radius() > 0.0 && design.platform_bar_radius() > 0.0) {
+    let is_simulated = matches!(format.contents, Contents::Simulator { .. });
+    if is_simulated && !(design.leg_bar_radius() > 0.0 && design.platform_bar_radius() > 0.0) {
         return Err(ExportError::NoBar(format.key));
     }
     if !prepared.is_finite() {
@@ -135,7 +137,7 @@ pub fn export(subject: &ExportSubject, format: Format) -> Result<Vec<u8>, Export
         },
     })?;
     // A number that the writer itself derives may be beyond all doubles, too. JSON has no such numbers, but texts of a user.
-    if format.is_text && format.key != json::FORMAT.key && prepared::has_number_that_is_none(&written) {
+    if format.is_text() && format.key != json::FORMAT.key && prepared::has_number_that_is_none(&written) {
         return Err(ExportError::NotFinite(format.key));
     }
     Ok(written)

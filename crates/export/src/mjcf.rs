@@ -3,7 +3,7 @@
 //! MuJoCo begins with controls of 0. The payload is part of the platform, the inertia of the rotors is that of the joints, and where the
 //! study states a motion, a keyframe has each pose at which it rests.
 
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::{Prepared, inertial, joint_axis, joint_name, rgba};
 use super::xml::Element;
 use glam::DVec2;
@@ -17,9 +17,9 @@ pub(super) const FORMAT: Format = Format {
     name: "MJCF",
     title: "MJCF, for MuJoCo",
     lost: Some("compliance of the bars, friction of the joints, and limits of the drives"),
-    is_text: true,
-    needs_bars: true,
-    joints_from_zero: false,
+    contents: Contents::Simulator {
+        joints_from_zero: false,
+    },
     write,
 };
 

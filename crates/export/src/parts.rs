@@ -1,6 +1,6 @@
 //! The parts of a design as a table: what has to be ordered and cut.
 
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::Prepared;
 use kinefront_model::evaluation::{CutBar, Part};
 
@@ -10,9 +10,7 @@ pub(super) const FORMAT: Format = Format {
     name: "the list of parts",
     title: "CSV, parts to order and cut",
     lost: Some("the assembly; the file lists bars, joints and motors; lengths of bars are those between the joints"),
-    is_text: true,
-    needs_bars: false,
-    joints_from_zero: false,
+    contents: Contents::Text,
     write,
 };
 

@@ -138,6 +138,12 @@ pub(super) fn inertial(body: &Body) -> (f64, DVec3, [f64; 4]) {
     (mass, centre, [xx + sphere, yy + sphere, zz + sphere, xy])
 }
 
+/// Returns the elements of an inertia tensor in the plane by their names in SDF and URDF.
+pub(super) fn inertia_elements([xx, yy, zz, xy]: [f64; 4]) -> impl Iterator<Item = (&'static str, String)> {
+    let names = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].into_iter();
+    names.zip([xx, xy, 0.0, yy, 0.0, zz].map(|value| value.to_string()))
+}
+
 /// Formats a length, angle or direction with the fewest digits that read back to the same value. Values below 1e-14,
 /// which the rotation of frames leaves in place of zeros, are written as 0.
 pub(super) fn text(value: f64) -> String {
@@ -158,6 +164,14 @@ pub(super) fn rgba(part: Part) -> [f64; 4] {
 /// Returns the name of the joint between a body and its parent.
 pub(super) fn joint_name(body: &Body) -> String {
     format!("{}_joint", body.name)
+}
+
+/// Returns the name of a kind of joint.
+pub(super) fn kind_name(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Prismatic => "prismatic",
+        JointKind::Revolute => "revolute",
+    }
 }
 
 /// Returns the axis of a joint in the frame of its body.

@@ -1,7 +1,7 @@
 //! SDF: a link for every body and a joint for every joint, including the joints that close the loops.
 
-use super::format::{AnyError, Format};
-use super::prepared::{Prepared, inertial, joint_axis, joint_name, place, rgba, text};
+use super::format::{AnyError, Contents, Format};
+use super::prepared::{Prepared, inertia_elements, inertial, joint_axis, joint_name, kind_name, place, rgba, text};
 use super::xml::{Element, numbers};
 use kinefront_model::mechanism::JointKind;
 use kinefront_scene::{Body, Frame, Joint, Solid, SolidShape};
@@ -15,9 +15,7 @@ pub(super) const FORMAT: Format = Format {
         "the stiffness of the actuators and the inertia of their rotors, and which joints are actuated; Gazebo's default physics engine does not close loops, that \
          of Gazebo Classic does",
     ),
-    is_text: true,
-    needs_bars: true,
-    joints_from_zero: true,
+    contents: Contents::Simulator { joints_from_zero: true },
     write,
 };
 
@@ -31,24 +29,10 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
             .with("name", "base")
             // The base carries the legs and is fixed to the world, so its mass has no effect.
             .child(Element::new("inertial").leaf("mass", "1"))
-            .children(
-                subject
-                    .base
-                    .iter()
-                    .enumerate()
-                    .map(|(index, solid)| visual(index, solid)),
-            ),
+            .children(subject.base.iter().enumerate().map(visual)),
     );
-    model.push(
-        Element::new("joint")
-            .with("name", "base_to_world")
-            .with("type", "fixed")
-            .leaf("parent", "world")
-            .leaf("child", "base"),
-    );
-    for body in &linkage.bodies {
-        model.push(link(body));
-    }
+    model.push(fixed_joint("base_to_world", "world", "base"));
+    model = model.children(linkage.bodies.iter().map(link));
     for body in &linkage.bodies {
         // The platform has no parent joint; only the closures connect it to the legs.
         if let Some(joint) = body.joint {
@@ -66,17 +50,13 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
             value: 0.0,
             limits: None,
         };
-        let [x, y] = closure.on_platform.to_array();
         let parent = &linkage.bodies[closure.leg].name;
         let name = format!("C{}", leg + 1);
         model.push(if closure.is_rigid {
-            Element::new("joint")
-                .with("name", name)
-                .with("type", "fixed")
-                .leaf("parent", parent)
-                .leaf("child", &platform.name)
+            fixed_joint(&name, parent, &platform.name)
         } else {
-            joint_element(&name, parent, &platform.name, passive, Some([x, y]))
+            let at = Some(closure.on_platform.to_array());
+            joint_element(&name, parent, &platform.name, passive, at)
         });
     }
     Element::new("sdf")
@@ -92,14 +72,10 @@ fn pose(x: f64, y: f64, angle: f64) -> String {
 
 fn link(body: &Body) -> Element {
     let Frame { origin, angle } = body.frame;
-    let (mass, centre, [xx, yy, zz, xy]) = inertial(body);
-    let inertia = Element::new("inertia")
-        .leaf("ixx", xx.to_string())
-        .leaf("ixy", xy.to_string())
-        .leaf("ixz", "0")
-        .leaf("iyy", yy.to_string())
-        .leaf("iyz", "0")
-        .leaf("izz", zz.to_string());
+    let (mass, centre, inertia) = inertial(body);
+    let inertia = inertia_elements(inertia).fold(Element::new("inertia"), |element, (key, value)| {
+        element.leaf(key, value)
+    });
     let solids = body.solids.iter().filter(|solid| solid.shape.has_volume());
     Element::new("link")
         .with("name", body.name.clone())
@@ -110,10 +86,10 @@ fn link(body: &Body) -> Element {
                 .leaf("mass", mass.to_string())
                 .child(inertia),
         )
-        .children(solids.enumerate().map(|(index, solid)| visual(index, solid)))
+        .children(solids.enumerate().map(visual))
 }
 
-fn visual(index: usize, solid: &Solid) -> Element {
+fn visual((index, solid): (usize, &Solid)) -> Element {
     let shape = match solid.shape {
         SolidShape::Bar { from, to, radius, .. } => Element::new("cylinder")
             .leaf("radius", text(radius))
@@ -132,16 +108,19 @@ fn visual(index: usize, solid: &Solid) -> Element {
         )
 }
 
+fn fixed_joint(name: &str, parent: &str, child: &str) -> Element {
+    let joint = Element::new("joint").with("name", name).with("type", "fixed");
+    joint.leaf("parent", parent).leaf("child", child)
+}
+
 /// Returns a joint at the origin of the child's frame, or at the point `at` of it.
 fn joint_element(name: &str, parent: &str, child: &str, joint: Joint, at: Option<[f64; 2]>) -> Element {
-    let kind = match joint.kind {
-        JointKind::Prismatic => "prismatic",
-        JointKind::Revolute => "revolute",
-    };
     let [lower, upper] = joint.limits.map_or([-UNLIMITED, UNLIMITED], |limits| {
         limits.map(|limit| limit - joint.value)
     });
-    let mut element = Element::new("joint").with("name", name).with("type", kind);
+    let mut element = Element::new("joint")
+        .with("name", name)
+        .with("type", kind_name(joint.kind));
     if let Some([x, y]) = at {
         element = element.leaf("pose", pose(x, y, 0.0));
     }

@@ -53,10 +53,7 @@ struct JointJson {
 impl From<&MemberStrength> for MemberJson {
     fn from(member: &MemberStrength) -> Self {
         let [axial_min_n, axial_max_n] = member.axial;
-        let (k_in_plane, k_out_of_plane) = member
-            .effective_lengths
-            .map(|[inside, outside]| (inside, outside))
-            .unzip();
+        let (k_in_plane, k_out_of_plane) = member.effective_lengths.map(<(f64, f64)>::from).unzip();
         Self {
             name: member.member.to_string(),
             stress_pa: member.stress,

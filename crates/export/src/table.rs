@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use parquet::basic::Compression;
-use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::data_type::{BoolType, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
-use parquet::file::writer::SerializedFileWriter;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::parser::parse_message_type;
 
 use kinefront_study::{Column, ColumnType};
@@ -117,34 +117,29 @@ fn write(header: &csv::StringRecord, columns: &[ParquetColumn]) -> Result<Vec<u8
     let mut group = file.next_row_group()?;
     for column in columns {
         let Some(mut writer) = group.next_column()? else { break };
-        // A definition level of 0 marks a missing value.
-        fn split<S, T>(values: &[Option<S>], make: impl Fn(&S) -> T) -> (Vec<T>, Vec<i16>) {
-            let levels = values.iter().map(|value| i16::from(value.is_some())).collect();
-            (values.iter().flatten().map(make).collect(), levels)
-        }
         match column {
-            ParquetColumn::Int(values) => {
-                let (values, levels) = split(values, |value| *value);
-                writer.typed::<Int64Type>().write_batch(&values, Some(&levels), None)?;
-            }
-            ParquetColumn::Number(values) => {
-                let (values, levels) = split(values, |value| *value);
-                writer.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?;
-            }
-            ParquetColumn::Truth(values) => {
-                let (values, levels) = split(values, |value| *value);
-                writer.typed::<BoolType>().write_batch(&values, Some(&levels), None)?;
-            }
+            ParquetColumn::Int(values) => write_values::<Int64Type, _>(&mut writer, values, |value| *value),
+            ParquetColumn::Number(values) => write_values::<DoubleType, _>(&mut writer, values, |value| *value),
+            ParquetColumn::Truth(values) => write_values::<BoolType, _>(&mut writer, values, |value| *value),
             ParquetColumn::Text(values) => {
-                let (values, levels) = split(values, |value| ByteArray::from(value.as_str()));
-                writer
-                    .typed::<ByteArrayType>()
-                    .write_batch(&values, Some(&levels), None)?;
+                write_values::<ByteArrayType, _>(&mut writer, values, |value| value.as_str().into())
             }
-        }
+        }?;
         writer.close()?;
     }
     group.close()?;
     file.close()?;
     Ok(bytes)
+}
+
+fn write_values<T: DataType, V>(
+    writer: &mut SerializedColumnWriter<'_>,
+    values: &[Option<V>],
+    make: impl Fn(&V) -> T::T,
+) -> Result<(), ParquetError> {
+    // A definition level of 0 marks a missing value.
+    let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+    let values: Vec<T::T> = values.iter().flatten().map(make).collect();
+    writer.typed::<T>().write_batch(&values, Some(&levels), None)?;
+    Ok(())
 }

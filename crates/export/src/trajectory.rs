@@ -1,7 +1,7 @@
 //! The motion of a study in equal steps of time: what a controller of the actuators takes as its reference.
 
 use super::ExportError;
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::Prepared;
 use kinefront_model::evaluation::TaskSample;
 
@@ -11,9 +11,7 @@ pub(super) const FORMAT: Format = Format {
     name: "the reference trajectory",
     title: "CSV, reference trajectory of the motion",
     lost: None,
-    is_text: true,
-    needs_bars: false,
-    joints_from_zero: false,
+    contents: Contents::Text,
     write,
 };
 
@@ -48,32 +46,21 @@ fn samples(subject: &Prepared) -> Result<Vec<TaskSample>, ExportError> {
     followed.map_err(|failure| ExportError::NoMotion(kinefront_scene::text::motion_failure(&failure)))
 }
 
-fn record(sample: &TaskSample) -> [String; HEADINGS.len()] {
-    let (instant, response) = (&sample.instant, &sample.response);
-    let [q1, q2, q3] = sample.actuators;
-    let [v1, v2, v3] = response.speeds;
-    let [a1, a2, a3] = response.accelerations;
-    let [f1, f2, f3] = response.forces;
-    let at = instant.pose.position;
-    let phi_deg = instant.pose.phi.to_degrees();
-    let numbers = [
-        instant.time,
-        at.x,
-        at.y,
-        phi_deg,
-        q1,
-        q2,
-        q3,
-        v1,
-        v2,
-        v3,
-        a1,
-        a2,
-        a3,
-        f1,
-        f2,
-        f3,
+fn record(sample: &TaskSample) -> impl Iterator<Item = String> {
+    let (pose, response) = (&sample.instant.pose, &sample.response);
+    let of_platform = [
+        sample.instant.time,
+        pose.position.x,
+        pose.position.y,
+        pose.phi.to_degrees(),
     ];
+    let of_legs = [
+        sample.actuators,
+        response.speeds,
+        response.accelerations,
+        response.forces,
+    ];
+    let numbers = of_platform.into_iter().chain(of_legs.into_iter().flatten());
     // A table shows no zero with a sign.
     numbers.map(|number| (number + 0.0).to_string())
 }

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::format::{AnyError, Format};
-use super::prepared::{Prepared, inertial, joint_axis, joint_name, place, rgba, text};
+use super::format::{AnyError, Contents, Format};
+use super::prepared::{Prepared, inertia_elements, inertial, joint_axis, joint_name, kind_name, place, rgba, text};
 use super::xml::{Element, numbers};
 use kinefront_model::mechanism::JointKind;
 use kinefront_scene::{Body, Joint, Linkage, Solid, SolidShape};
@@ -17,9 +17,7 @@ pub(super) const FORMAT: Format = Format {
         "the closed loops (URDF describes trees, so the platform is attached to leg 1, and legs 2 and 3 end free at C2 and C3); the \
          stiffness of the actuators and the inertia of their rotors, and which joints are actuated; the effort and velocity limits are placeholders",
     ),
-    is_text: true,
-    needs_bars: true,
-    joints_from_zero: true,
+    contents: Contents::Simulator { joints_from_zero: true },
     write,
 };
 
@@ -47,14 +45,8 @@ fn write(subject: &Prepared) -> Result<Vec<u8>, AnyError> {
     robot.push(platform_joint(linkage));
     for (name, parent, at) in frames(linkage) {
         robot.push(Element::new("link").with("name", name.clone()));
-        robot.push(joint_element(
-            &format!("{name}_fixed"),
-            "fixed",
-            &parent,
-            &name,
-            at,
-            0.0,
-        ));
+        let joint = format!("{name}_fixed");
+        robot.push(joint_element(&joint, "fixed", &parent, &name, at, 0.0));
     }
     robot.document(&FORMAT.preamble(subject))
 }
@@ -66,9 +58,8 @@ fn leg_joint(linkage: &Linkage, body: &Body, joint: &Joint) -> Element {
         .map_or("base", |parent| linkage.bodies[parent].name.as_str());
     let frame = linkage.local_frame(body);
     let kind = match joint.kind {
-        JointKind::Prismatic => "prismatic",
-        JointKind::Revolute if joint.limits.is_some() => "revolute",
-        JointKind::Revolute => "continuous",
+        JointKind::Revolute if joint.limits.is_none() => "continuous",
+        kind => kind_name(kind),
     };
     let mut limit = Element::new("limit");
     if let Some(limits) = joint.limits {
@@ -89,11 +80,11 @@ fn platform_joint(linkage: &Linkage) -> Element {
     let closure = linkage.closures[0];
     let leg = &linkage.bodies[closure.leg];
     let angle = platform.frame.angle - leg.frame.angle;
-    if closure.is_rigid {
-        return joint_element("C1", "fixed", &leg.name, &platform.name, closure.on_leg, angle);
+    let joint = |kind| joint_element("C1", kind, &leg.name, &platform.name, closure.on_leg, angle);
+    match closure.is_rigid {
+        true => joint("fixed"),
+        false => joint("continuous").child(Element::new("axis").with("xyz", joint_axis(JointKind::Revolute))),
     }
-    joint_element("C1", "continuous", &leg.name, &platform.name, closure.on_leg, angle)
-        .child(Element::new("axis").with("xyz", joint_axis(JointKind::Revolute)))
 }
 
 /// Frames at `P` and at the cut joints (`C_i` on the leg and on the platform), so that a program can close the loops again:
@@ -126,32 +117,17 @@ fn origin([x, y, z, roll, pitch, yaw]: [f64; 6]) -> Element {
 }
 
 fn link(body: &Body, shift: DVec2) -> Element {
-    let (mass, centre, [xx, yy, zz, xy]) = inertial(body);
-    let inertia = [
-        ("ixx", xx),
-        ("ixy", xy),
-        ("ixz", 0.0),
-        ("iyy", yy),
-        ("iyz", 0.0),
-        ("izz", zz),
-    ]
-    .into_iter()
-    .fold(Element::new("inertia"), |element, (key, value)| {
-        element.with(key, value.to_string())
+    let (mass, centre, inertia) = inertial(body);
+    let inertia = inertia_elements(inertia).fold(Element::new("inertia"), |element, (key, value)| {
+        element.with(key, value)
     });
+    let middle = [centre.x - shift.x, centre.y - shift.y, centre.z, 0.0, 0.0, 0.0];
     let solids = body.solids.iter().filter(|solid| solid.shape.has_volume());
     Element::new("link")
         .with("name", body.name.clone())
         .child(
             Element::new("inertial")
-                .child(origin([
-                    centre.x - shift.x,
-                    centre.y - shift.y,
-                    centre.z,
-                    0.0,
-                    0.0,
-                    0.0,
-                ]))
+                .child(origin(middle))
                 .child(Element::new("mass").with("value", mass.to_string()))
                 .child(inertia),
         )

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::dynamics::{DynamicsJson, OverWorkspaceJson, TaskJson};
 use super::pose::PoseJson;
@@ -11,51 +11,29 @@ use kinefront_model::clearance::{Clearance, StackOrder, Stacking};
 use kinefront_model::evaluation::{
     Bound, Evaluation, LimitResult, Model, PoseEvaluation, PoseScalar, Quantity, Unreachable,
 };
-use kinefront_model::mechanism::{CrossSection, Design, DesignVariable};
+use kinefront_model::mechanism::{CrossSection, DESIGN_VARIABLES, Design};
 use kinefront_model::spatial::LEGS;
 use kinefront_model::strength::StrengthReport;
 
-/// The variables of a design \[m, and deg where the key says so\].
-#[derive(Debug, Serialize)]
-pub struct DesignJson {
-    #[serde(rename = "R")]
-    base_radius: f64,
-    #[serde(rename = "r")]
-    platform_radius: f64,
-    #[serde(rename = "Lb")]
-    link_length: f64,
-    #[serde(rename = "rj")]
-    leg_bar_radius: f64,
-    #[serde(rename = "rp")]
-    platform_bar_radius: f64,
-    #[serde(rename = "La", skip_serializing_if = "Option::is_none")]
-    proximal_length: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    alpha_deg: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    beta_deg: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gamma_deg: Option<f64>,
-}
+/// The variables of a design \[m, and deg where the key says so\] by their keys, in their order.
+#[derive(Debug)]
+pub struct DesignJson(Vec<(&'static str, f64)>);
 
 impl From<&Design> for DesignJson {
     fn from(design: &Design) -> Self {
         // As in the text of a design, what is not given has its default.
-        let given = |variable: DesignVariable| {
-            let mut given = design.given_variables();
-            given.find(|other| *other == variable).map(|found| design.value(found))
-        };
-        Self {
-            base_radius: design.base_radius(),
-            platform_radius: design.platform_radius(),
-            link_length: design.link_length(),
-            leg_bar_radius: design.leg_bar_radius(),
-            platform_bar_radius: design.platform_bar_radius(),
-            proximal_length: given(DesignVariable::ProximalLength),
-            alpha_deg: given(DesignVariable::RailAngle),
-            beta_deg: given(DesignVariable::GuideAngle),
-            gamma_deg: given(DesignVariable::PlatformGuideAngle),
-        }
+        let variables = DESIGN_VARIABLES.into_iter().chain(design.given_variables());
+        Self(
+            variables
+                .map(|variable| (variable.key(), design.value(variable)))
+                .collect(),
+        )
+    }
+}
+
+impl Serialize for DesignJson {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().copied())
     }
 }
 

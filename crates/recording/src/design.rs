@@ -10,8 +10,7 @@ use super::{blueprint, motion, paths, timelines};
 use kinefront_model::evaluation::{Evaluation, Model};
 use kinefront_model::spatial::Pose;
 use kinefront_scene::{
-    EllipsoidKind, EllipsoidSet, Field, Heatmap, HeatmapSettings, ellipsoids, manipulator, regular_workspace, tour,
-    workspace_proof,
+    EllipsoidKind, EllipsoidSet, Field, Heatmap, HeatmapSettings, manipulator, tour, workspace_proof,
 };
 use kinefront_study::{CertifiedWorkspace, DesignProblem, Drivers, DriversOptions, PreparedStudy, Study, replace};
 
@@ -45,15 +44,11 @@ pub(super) fn write_new(
     path: &Path,
     draw: impl FnOnce(&Path) -> Result<(), RecordingError>,
 ) -> Result<(), RecordingError> {
-    let failed = |cause: std::io::Error| RecordingError::Write {
-        path: path.to_owned(),
-        cause,
-    };
     if path.exists() {
-        return Err(failed(std::io::ErrorKind::AlreadyExists.into()));
+        return Err(RecordingError::of_file(path)(std::io::ErrorKind::AlreadyExists.into()));
     }
     replace(path, draw).map_err(|error| match error {
-        RecordingError::Write { cause, .. } => failed(cause),
+        RecordingError::Write { cause, .. } => RecordingError::of_file(path)(cause),
         error => error,
     })
 }
@@ -67,11 +62,8 @@ fn draw_design(
 ) -> Result<(), RecordingError> {
     let (study, model) = (study.study(), study.model());
     let writer = RecordingWriter::create(path, heading)?;
-    let proof = study
-        .workspace
-        .certify
-        .then(|| workspace_proof(model, evaluation, &|| true))
-        .flatten();
+    let prove = || workspace_proof(model, evaluation, &|| true);
+    let proof = study.workspace.certify.then(prove).flatten();
     let certified = proof
         .as_ref()
         .map(|proof| CertifiedWorkspace::new(&proof.certificate, &proof.claim));
@@ -82,15 +74,15 @@ fn draw_design(
     }
     let evaluation = &evaluation;
     let subject = DrawnDesign { model, evaluation };
-    let cylinder = regular_workspace(evaluation, model.settings().workspace.rotation_range_deg);
-    let tour = cylinder.and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
+    let tour = subject
+        .cylinder()
+        .and_then(|cylinder| tour(model, &evaluation.design, &cylinder, TOUR_STEPS));
     let still = [subject.home()];
     let poses: &[Pose] = tour.as_ref().map_or(&still, |tour| &tour.poses);
     let fields: Vec<Field> = Field::of(model, &evaluation.design).collect();
     // A motion that ends early has no curves that stop in the middle.
     let followed = model.follow_task(evaluation);
-    let samples = followed.filter(|(outcome, _)| outcome.figures().is_some());
-    let samples = samples.map(|(_, samples)| samples);
+    let samples = followed.and_then(|(outcome, samples)| outcome.figures().map(|_| samples));
     let extent = subject.extent(poses);
     blueprint::send_design_layout(writer.stream(), extent, &fields, first, samples.is_some())?;
     let canvas = Canvas::at(&writer, ALWAYS);
@@ -108,19 +100,9 @@ fn draw_design(
         motion::record_motion(&writer, &subject, samples)?;
     }
     let drivers = drivers(study, evaluation);
-    writer.text(
-        paths::CARD,
-        ALWAYS,
-        &card(
-            heading,
-            model,
-            evaluation,
-            &sets,
-            tour.as_ref(),
-            certified.as_ref(),
-            drivers.as_ref(),
-        ),
-    )?;
+    let (tour, certified, drivers) = (tour.as_ref(), certified.as_ref(), drivers.as_ref());
+    let card = card(heading, model, evaluation, &sets, tour, certified, drivers);
+    writer.text(paths::CARD, ALWAYS, &card)?;
     writer.close()
 }
 
@@ -130,17 +112,12 @@ fn draw_standing(
     canvas: &Canvas<'_>,
     fields: Vec<Field>,
 ) -> Result<Vec<EllipsoidSet>, RecordingError> {
-    let DrawnDesign { model, evaluation } = *subject;
     let mut sets = Vec::new();
     for kind in EllipsoidKind::ALL {
-        if let Some(set) = ellipsoids(model, evaluation, kind) {
-            let entity = format!("{}/{}", paths::ELLIPSOIDS, kind.key());
-            canvas.ellipsoids(&entity, &set, 0.0, subject.note())?;
-            sets.push(set);
-        }
+        sets.extend(subject.ellipsoids(canvas, kind)?);
     }
     for field in fields {
-        let heatmap = Heatmap::new(model, &evaluation.design, field, subject.home().phi, FINE);
+        let heatmap = Heatmap::new(subject.model, subject.design(), field, subject.home().phi, FINE);
         subject.heatmap(canvas, &heatmap, subject.floor())?;
     }
     subject.workspace(canvas)?;
@@ -174,16 +151,10 @@ pub(super) fn record_step(
     }
     let heatmap = Heatmap::new(model, &evaluation.design, Field::DEXTERITY, home.phi, STEP);
     subject.heatmap(&canvas, &heatmap, subject.floor())?;
-    let set = ellipsoids(model, evaluation, EllipsoidKind::Stiffness);
-    if let Some(set) = &set {
-        canvas.ellipsoids(&format!("{}/stiffness", paths::ELLIPSOIDS), set, 0.0, subject.note())?;
-    }
+    let set = subject.ellipsoids(&canvas, EllipsoidKind::Stiffness)?;
     subject.workspace(&canvas)?;
     subject.configuration(&canvas)?;
     subject.layers(&canvas, OUTLINE, false)?;
-    writer.text(
-        paths::CARD,
-        moment,
-        &card(heading, model, evaluation, set.as_slice(), None, certified, drivers),
-    )
+    let card = card(heading, model, evaluation, set.as_slice(), None, certified, drivers);
+    writer.text(paths::CARD, moment, &card)
 }

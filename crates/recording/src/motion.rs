@@ -1,8 +1,7 @@
 //! Records the motion of a design: the manipulator and the curves of its actuators over the time of a cycle.
 
-use rerun::{Scalars, SeriesLines, TimeColumn};
+use rerun::TimeColumn;
 
-use super::colors::rgb;
 use super::draw::Canvas;
 use super::subject::DrawnDesign;
 use super::writer::{ALWAYS, RecordingError, RecordingWriter};
@@ -34,18 +33,11 @@ pub(super) fn record_motion(
     for curve in MotionCurve::ALL {
         for leg in 0..3 {
             let entity = format!("{}/leg{}", curve_path(curve), leg + 1);
-            let line = SeriesLines::new()
-                .with_names([format!("leg {}: {}", leg + 1, curve.title(actuator))])
-                .with_colors([rgb(palette::SERIES[leg])]);
-            writer.row(&entity, ALWAYS, &line)?;
+            let name = format!("leg {}: {}", leg + 1, curve.title(actuator));
             let times = drawn.iter().map(|sample| nanoseconds(sample) as i64);
+            let times = TimeColumn::new_duration_nanos(timelines::TIME, times);
             let values = drawn.iter().map(|sample| curve.values(sample)[leg]);
-            let columns = Scalars::new(values).columns_of_unit_batches();
-            writer.stream().send_columns(
-                entity,
-                [TimeColumn::new_duration_nanos(timelines::TIME, times)],
-                columns.map_err(RecordingError::encode)?,
-            )?;
+            writer.curve(&entity, name, palette::SERIES[leg], times, values)?;
         }
     }
     let step = samples.len().div_ceil(MOST_POSES).max(1);

@@ -119,12 +119,7 @@ impl Plot {
         if let Some(&[_, y]) = strip.last() {
             strip.push([worst_x, y]);
         }
-        let strips = if self.objectives.len() == 2 {
-            vec![strip]
-        } else {
-            Vec::new()
-        };
-        LineStrips2D::new(strips)
+        LineStrips2D::new((self.objectives.len() == 2).then_some(strip))
             .with_colors([FRONT_COLOR])
             .with_radii([Radius::new_ui_points(1.0)])
             .with_draw_order(35.0)
@@ -216,11 +211,10 @@ impl PlotGrid {
 
     /// Returns the legend of the colours, in the upper left corner.
     pub fn legend(&self, architectures: &[Architecture]) -> Points2D {
-        let [r, g, b] = INFEASIBLE_COLOR;
         let entries: Vec<(String, Color)> = architectures
             .iter()
             .map(|&architecture| (architecture.to_string(), colors::architecture(architecture)))
-            .chain([("infeasible".to_owned(), Color::from_rgb(r, g, b))])
+            .chain([("infeasible".to_owned(), colors::rgb(INFEASIBLE_COLOR))])
             .collect();
         Points2D::new((0..entries.len()).map(|k| self.at(0.08, 0.96 - 0.085 * k as f32)))
             .with_radii(std::iter::repeat_n(Radius::new_ui_points(5.0), entries.len()))

@@ -1,9 +1,8 @@
 //! Prices along a front as curves.
 
-use rerun::{Scalars, SeriesLines, TimeColumn};
+use rerun::TimeColumn;
 
-use super::colors::rgb;
-use super::writer::{ALWAYS, RecordingError, RecordingWriter};
+use super::writer::{RecordingError, RecordingWriter};
 use super::{paths, timelines};
 use kinefront_model::mechanism::Architecture;
 use kinefront_scene::palette;
@@ -37,16 +36,10 @@ pub(super) fn record_curves(
         let drawn = along.curves(kinds).into_iter().filter(|curve| curve.is_usual(DRAWN));
         for (curve, color) in drawn.zip(palette::SERIES.into_iter().cycle()) {
             let entity = format!("{}/{}", view_path(along.architecture, view), curve.parameter);
-            let line = SeriesLines::new()
-                .with_names([format!("{} [% for 1 %]", curve.label)])
-                .with_colors([rgb(color)]);
-            writer.row(&entity, ALWAYS, &line)?;
-            let prices = Scalars::new(curve.points.iter().map(|[_, price]| *price)).columns_of_unit_batches();
-            writer.stream().send_columns(
-                entity,
-                [TimeColumn::new_sequence(timelines::FRONT, steps.iter().copied())],
-                prices.map_err(RecordingError::encode)?,
-            )?;
+            let name = format!("{} [% for 1 %]", curve.label);
+            let times = TimeColumn::new_sequence(timelines::FRONT, steps.iter().copied());
+            let prices = curve.points.iter().map(|[_, price]| *price);
+            writer.curve(&entity, name, color, times, prices)?;
         }
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use rerun::components::FillMode;
-use rerun::{Boxes3D, Color, LineStrips3D, Mesh3D, Radius};
+use rerun::{Boxes3D, Color, Mesh3D, Radius};
 
 use super::colors::{self, rgb};
 use super::draw::{Canvas, about_z, point};
@@ -64,13 +64,11 @@ impl Canvas<'_> {
             .with_triangle_indices(triangles)
             .with_vertex_colors(shades);
         self.row(&format!("{root}/depth"), &mesh)?;
-        let strips = outlines
-            .iter()
-            .map(|(_, outline)| outline.iter().map(lift).collect::<Vec<_>>());
-        let strips = LineStrips3D::new(strips)
-            .with_colors(outlines.iter().map(|(part, _)| color(part.outcome, part.scalar)))
-            .with_radii(std::iter::repeat_n(Radius::new_ui_points(0.7), outlines.len()));
-        self.row(&format!("{root}/boxes"), &strips)?;
+        let lines = outlines.iter().map(|(part, outline)| {
+            let strip: Vec<[f32; 3]> = outline.iter().map(lift).collect();
+            (strip, color(part.outcome, part.scalar), 0.7)
+        });
+        self.lines(&format!("{root}/boxes"), lines)?;
         if let Some(violation) = proof.certificate.violation {
             let at: DVec3 = violation.pose.position.extend(z);
             self.mark(&format!("{root}/violation"), at, &words(proof), colors::LIMIT)?;

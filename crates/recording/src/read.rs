@@ -164,11 +164,8 @@ pub enum CopyError {
 /// [`CopyError`], which names the file that cannot be read or written.
 pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &str)>) -> Result<(), CopyError> {
     let read = messages(from)?;
-    let failed = |cause: io::Error| RecordingError::Write {
-        path: to.to_owned(),
-        cause,
-    };
-    let file = RrdFile::create(to).map_err(failed)?;
+    let failed = RecordingError::of_file(to);
+    let file = RrdFile::create(to).map_err(&failed)?;
     let mut recording: Option<StoreId> = None;
     let mut last = [(timelines::EVALUATION, 0), (timelines::GENERATION, 0)];
     for message in read {
@@ -191,7 +188,7 @@ pub fn save_copy(from: &Path, to: &Path, shown: Option<(&Model, &Evaluation, &st
             }
         }
         file.send(message);
-        file.check().map_err(failed)?;
+        file.check().map_err(&failed)?;
     }
     if let Some(((model, evaluation, heading), store)) = shown.zip(recording) {
         let builder = RecordingWriter::builder().recording_id(store.recording_id().clone());

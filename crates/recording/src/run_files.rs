@@ -68,19 +68,12 @@ impl RunFiles {
     ) -> io::Result<(Vec<Subscriber>, Self)> {
         let (to_tables, events) = sync_channel(CHANNEL);
         let mut listeners = vec![to_tables];
-        let recording = match recorder {
-            Some(recorder) => {
-                let (to_recorder, events) = sync_channel(CHANNEL);
-                listeners.push(to_recorder);
-                Some(RecordingThread::start(
-                    recorder,
-                    events,
-                    folder.recording_path(),
-                    tell.clone(),
-                )?)
-            }
-            None => None,
+        let record = |recorder| {
+            let (to_recorder, events) = sync_channel(CHANNEL);
+            listeners.push(to_recorder);
+            RecordingThread::start(recorder, events, folder.recording_path(), tell.clone())
         };
+        let recording = recorder.map(record).transpose()?;
         let thread = Builder::new().name("kinefront-tables".to_owned()).spawn(move || {
             // Whatever happens to this thread, a search whose designs are lost does not go on.
             let guard = StopOnPanic(Arc::clone(&control));

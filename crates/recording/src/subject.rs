@@ -12,8 +12,9 @@ use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_scene::text::number;
 use kinefront_scene::{
-    ColorMap, ConfigurationSpace, Field, FieldLegend, Heatmap, HeatmapSettings, MotionPath, RegularCylinder,
-    SolidShape, WorkspaceProof, manipulator, region_corners, regular_workspace,
+    ColorMap, ConfigurationSpace, EllipsoidKind, EllipsoidSet, Field, FieldLegend, Heatmap, HeatmapSettings,
+    MotionPath, RegularCylinder, SolidShape, WorkspaceProof, ellipsoids, manipulator, region_corners,
+    regular_workspace,
 };
 
 /// Orientations of the layers, relative to the home orientation \[deg\].
@@ -43,6 +44,11 @@ impl DrawnDesign<'_> {
 
     pub(super) fn home(&self) -> Pose {
         self.model.home(self.evaluation)
+    }
+
+    /// Returns the regular workspace, if there is one.
+    pub(super) fn cylinder(&self) -> Option<RegularCylinder> {
+        regular_workspace(self.evaluation, self.model.settings().workspace.rotation_range_deg)
     }
 
     /// Returns the height of the heatmaps, below every solid of the manipulator \[m\].
@@ -84,7 +90,7 @@ impl DrawnDesign<'_> {
     }
 
     /// Returns the position of notes, in front of the base and the workspace.
-    pub(super) fn note(&self) -> DVec3 {
+    fn note(&self) -> DVec3 {
         let front = (0.95 * self.design().base_radius()).max(1.3 * self.evaluation.workspace_radius());
         DVec3::new(0.0, -front, 0.0)
     }
@@ -144,10 +150,7 @@ impl DrawnDesign<'_> {
 
     /// Draws the regular workspace below the manipulator, and the poses that limit it.
     pub(super) fn workspace(&self, canvas: &Canvas<'_>) -> Result<(), RecordingError> {
-        let Some(cylinder) = regular_workspace(self.evaluation, self.model.settings().workspace.rotation_range_deg)
-        else {
-            return Ok(());
-        };
+        let Some(cylinder) = self.cylinder() else { return Ok(()) };
         let floor = self.floor();
         // Slightly above the heatmap, so that the line remains visible.
         let heights = [0.97 * floor, DISC * floor];
@@ -178,8 +181,27 @@ impl DrawnDesign<'_> {
             return Ok(());
         };
         canvas.manipulator(paths::MANIPULATOR, &scene)?;
+        self.mark_pose(canvas, pose)
+    }
+
+    /// Marks a pose in the configuration space.
+    pub(super) fn mark_pose(&self, canvas: &Canvas<'_>, pose: &Pose) -> Result<(), RecordingError> {
         let at = self.space().place(pose.position, pose.phi);
         canvas.mark(&format!("{}/pose", paths::CONFIGURATION), at, "P", colors::ELLIPSOID)
+    }
+
+    /// Draws ellipsoids of a kind, and returns them; `None` for a design without a regular workspace.
+    pub(super) fn ellipsoids(
+        &self,
+        canvas: &Canvas<'_>,
+        kind: EllipsoidKind,
+    ) -> Result<Option<EllipsoidSet>, RecordingError> {
+        let set = ellipsoids(self.model, self.evaluation, kind);
+        if let Some(set) = &set {
+            let root = format!("{}/{}", paths::ELLIPSOIDS, kind.key());
+            canvas.ellipsoids(&root, set, 0.0, self.note())?;
+        }
+        Ok(set)
     }
 
     /// Draws the path of a motion, above the disc of the workspace.
@@ -198,10 +220,7 @@ impl DrawnDesign<'_> {
 
     /// Draws only the regular workspace, at the entities below `root`.
     pub(super) fn disc(&self, canvas: &Canvas<'_>, root: &str) -> Result<(), RecordingError> {
-        let Some(cylinder) = regular_workspace(self.evaluation, self.model.settings().workspace.rotation_range_deg)
-        else {
-            return Ok(());
-        };
+        let Some(cylinder) = self.cylinder() else { return Ok(()) };
         let floor = self.floor();
         self.outline(canvas, root, &cylinder, [0.97 * floor, DISC * floor], "")
     }
@@ -227,10 +246,7 @@ impl DrawnDesign<'_> {
         let root = |name: &str| format!("{}/{name}", paths::CONFIGURATION);
         let extent = self.design().base_radius();
         canvas.configuration_axes(&root("axes"), &space, 0.8 * extent, SPAN_DEG.to_radians())?;
-        let Some(cylinder) = regular_workspace(self.evaluation, self.model.settings().workspace.rotation_range_deg)
-        else {
-            return Ok(());
-        };
+        let Some(cylinder) = self.cylinder() else { return Ok(()) };
         let height = |turn: f64| space.place(DVec2::ZERO, cylinder.phi + turn).z;
         let half = 0.5 * cylinder.phi_range;
         let label = format!("Δφ = {}°", self.model.settings().workspace.rotation_range_deg);

@@ -9,10 +9,11 @@ use rerun::sink::LogSink;
 use kinefront_model::workspace::GridError;
 use kinefront_study::WriteError;
 use rerun::{
-    AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializedComponentBatch,
-    SerializedComponentColumn, TextDocument, TimeColumn,
+    AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamError, Scalars, SerializedComponentBatch,
+    SerializedComponentColumn, SeriesLines, TextDocument, TimeColumn,
 };
 
+use super::colors::rgb;
 use super::sink::RrdFile;
 use super::{APPLICATION_ID, timelines};
 
@@ -39,6 +40,14 @@ pub enum RecordingError {
 }
 
 impl RecordingError {
+    /// Returns what makes an error of a file from its cause.
+    pub(super) fn of_file(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |cause| Self::Write {
+            path: path.to_owned(),
+            cause,
+        }
+    }
+
     pub(super) fn encode(error: impl std::fmt::Display) -> Self {
         Self::Encode(error.to_string())
     }
@@ -83,10 +92,7 @@ pub(super) struct RecordingWriter {
 impl RecordingWriter {
     /// Creates the file; an existing file is an error.
     pub(super) fn create(path: &Path, name: &str) -> Result<Self, RecordingError> {
-        let file = RrdFile::create(path).map_err(|cause| RecordingError::Write {
-            path: path.to_owned(),
-            cause,
-        })?;
+        let file = RrdFile::create(path).map_err(RecordingError::of_file(path))?;
         Self::over(&file, path, Self::builder().recording_name(name))
     }
 
@@ -150,6 +156,22 @@ impl RecordingWriter {
         Ok(self.recording.send_columns(entity, times, columns)?)
     }
 
+    /// Writes values over time, drawn as a curve with a name and a colour.
+    pub(super) fn curve(
+        &self,
+        entity: &str,
+        name: String,
+        color: [u8; 3],
+        times: TimeColumn,
+        values: impl Iterator<Item = f64>,
+    ) -> Result<(), RecordingError> {
+        let line = SeriesLines::new().with_names([name]).with_colors([rgb(color)]);
+        self.row(entity, ALWAYS, &line)?;
+        let columns = Scalars::new(values).columns_of_unit_batches();
+        let columns = columns.map_err(RecordingError::encode)?;
+        Ok(self.recording.send_columns(entity, [times], columns)?)
+    }
+
     /// Writes a markdown document.
     pub(super) fn text(&self, entity: &str, moment: Moment<'_>, markdown: &str) -> Result<(), RecordingError> {
         self.row(entity, moment, &TextDocument::from_markdown(markdown))
@@ -160,10 +182,7 @@ impl RecordingWriter {
         let Some((path, file)) = &self.file else {
             return Ok(());
         };
-        file.check().map_err(|cause| RecordingError::Write {
-            path: path.clone(),
-            cause,
-        })
+        file.check().map_err(RecordingError::of_file(path))
     }
 
     /// Writes the footer and closes the file.
@@ -177,6 +196,6 @@ impl RecordingWriter {
         };
         flushed
             .and_then(|()| file.finish())
-            .map_err(|cause| RecordingError::Write { path, cause })
+            .map_err(RecordingError::of_file(&path))
     }
 }

@@ -48,6 +48,28 @@ fn tables(run: &Path) -> [Vec<u8>; 3] {
     ["study.toml", "designs.csv", "front.csv"].map(|file| std::fs::read(run.join(file)).expect("a table"))
 }
 
+/// Pauses, resumes and steps a run at random moments, and then ends it in the way that the random seed tells.
+fn disturb(control: &RunControl, seed: u64) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    for _ in 0..6 {
+        match random.next_u32() % 6 {
+            0 => control.pause(),
+            1 | 2 => control.resume(),
+            3 => control.step(),
+            _ => {}
+        }
+        std::thread::sleep(Duration::from_micros(u64::from(random.next_u32() % 4000)));
+    }
+    control.resume();
+    std::thread::sleep(Duration::from_micros(u64::from(random.next_u32() % 80_000)));
+    match seed % 4 {
+        0 => control.interrupt(),
+        1 => control.stop(),
+        2 => control.abandon(),
+        _ => {}
+    }
+}
+
 /// Whatever is done to a run, its folder is sound, and the resumed run is the run to which nothing was done.
 #[test]
 fn a_run_survives_its_controls() {
@@ -66,26 +88,7 @@ fn a_run_survives_its_controls() {
     for seed in 0..repetitions(12, 300) as u64 {
         let run = folder.path().join("run");
         let (writer, search) = start(&run, seed.is_multiple_of(20));
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let outcome = perform(writer, search, move |control| {
-            for _ in 0..6 {
-                match random.next_u32() % 6 {
-                    0 => control.pause(),
-                    1 | 2 => control.resume(),
-                    3 => control.step(),
-                    _ => {}
-                }
-                std::thread::sleep(Duration::from_micros(u64::from(random.next_u32() % 4000)));
-            }
-            control.resume();
-            std::thread::sleep(Duration::from_micros(u64::from(random.next_u32() % 80_000)));
-            match seed % 4 {
-                0 => control.interrupt(),
-                1 => control.stop(),
-                2 => control.abandon(),
-                _ => {}
-            }
-        });
+        let outcome = perform(writer, search, |control| disturb(control, seed));
         let place = match outcome {
             Some(EndReason::Completed) => 0,
             Some(EndReason::Stopped) => 1,

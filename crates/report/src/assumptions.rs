@@ -1,6 +1,6 @@
 //! Sensitivity to assumptions: how fronts and reference designs change when an assumption of the study is changed.
 
-use super::fronts::Front;
+use super::fronts::{Front, front_of};
 use super::source::Source;
 use super::{Fronts, ReportError};
 use kinefront_model::evaluation::{Evaluation, GridChoice};
@@ -38,8 +38,7 @@ impl Variation {
 
     /// Returns the front of an architecture, unless it is empty.
     pub fn of(&self, architecture: Architecture) -> Option<&Front> {
-        let found = self.alone.iter().find(|(other, _)| *other == architecture);
-        found.map(|(_, front)| front).filter(|front| !front.members.is_empty())
+        front_of(&self.alone, architecture).filter(|front| !front.members.is_empty())
     }
 }
 

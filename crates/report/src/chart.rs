@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::error::AnyError;
 use std::sync::{Arc, OnceLock};
 
+use plotters::coord::Shift;
 use plotters::coord::ranged1d::{Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -18,24 +19,33 @@ pub(super) struct ChartAxis {
     pub logarithmic: bool,
 }
 
+/// Returns the smallest and the largest of some values; the first is the larger one if there are none.
+pub(super) fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let values = values.into_iter();
+    values.fold(none, |[low, high], value| [low.min(value), high.max(value)])
+}
+
 impl ChartAxis {
+    /// Creates a linear axis over a range.
+    pub fn linear(label: impl Into<Cow<'static, str>>, range: [f64; 2]) -> Self {
+        Self {
+            label: label.into(),
+            range,
+            logarithmic: false,
+        }
+    }
+
     /// Creates a linear axis from 0 to slightly beyond the largest value.
     pub fn from_zero(label: impl Into<Cow<'static, str>>, values: impl Iterator<Item = f64>) -> Self {
         let largest = values.fold(0.0, f64::max);
-        Self {
-            label: label.into(),
-            range: [0.0, if largest > 0.0 { 1.06 * largest } else { 1.0 }],
-            logarithmic: false,
-        }
+        Self::linear(label, [0.0, if largest > 0.0 { 1.06 * largest } else { 1.0 }])
     }
 
     /// Creates a linear axis from 0 if no value is negative and 0 is near compared with the largest one, otherwise about the values.
     pub fn from_zero_if_near(label: impl Into<Cow<'static, str>>, values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-        let (low, high) = (
-            values.iter().copied().fold(f64::INFINITY, f64::min),
-            values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        );
+        let [low, high] = extremes(values.iter().copied());
         if (0.0..=0.7 * high).contains(&low) {
             Self::from_zero(label, values.into_iter())
         } else {
@@ -45,37 +55,24 @@ impl ChartAxis {
 
     /// Creates a linear axis from slightly below the smallest value to slightly beyond the largest one.
     pub fn about(label: impl Into<Cow<'static, str>>, values: impl Iterator<Item = f64>) -> Self {
-        let [low, high] = values
-            .filter(|value| value.is_finite())
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-                [low.min(value), high.max(value)]
-            });
+        let [low, high] = extremes(values.filter(|value| value.is_finite()));
         let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
         // Equal values get an axis that has a length, too.
         let spare = (0.06 * (high - low)).max(1e-3 * high.abs()).max(1e-9);
-        Self {
-            label: label.into(),
-            range: [low - spare, high + spare],
-            logarithmic: false,
-        }
+        Self::linear(label, [low - spare, high + spare])
     }
 
     /// Creates a logarithmic axis over the positive values.
     pub fn decades(label: impl Into<Cow<'static, str>>, values: impl Iterator<Item = f64>) -> Self {
-        let [low, high] = values
-            .filter(|&value| value > 0.0)
-            .fold([f64::INFINITY, 0.0], |[low, high], value| {
-                [low.min(value), high.max(value)]
-            });
+        let [low, high] = extremes(values.filter(|&value| value > 0.0));
         let range = if low <= high {
             [0.8 * low, 1.25 * high]
         } else {
             [0.1, 10.0]
         };
         Self {
-            label: label.into(),
-            range,
             logarithmic: true,
+            ..Self::linear(label, range)
         }
     }
 }
@@ -109,6 +106,17 @@ pub(super) struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
+impl Series {
+    pub fn new(name: impl Into<String>, color: [u8; 3], mark: Mark, points: Vec<[f64; 2]>) -> Self {
+        Self {
+            name: name.into(),
+            color,
+            mark,
+            points,
+        }
+    }
+}
+
 /// A chart.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Chart {
@@ -133,6 +141,8 @@ const FINE: u32 = 4;
 /// Opacity of an area, so that the grid is visible through it.
 const AREA_OPACITY: f64 = 0.85;
 
+type DrawingResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
 const INK: RGBColor = RGBColor(40, 44, 52);
 const GRID: RGBColor = RGBColor(226, 229, 234);
 
@@ -154,35 +164,30 @@ impl Chart {
     pub fn svg(&self) -> Result<String, AnyError> {
         register_font()?;
         let mut text = String::new();
-        {
-            let root = SVGBackend::with_string(&mut text, (FINE * SIZE.0, FINE * SIZE.1)).into_drawing_area();
-            let words = |error: &dyn std::fmt::Display| format!("drawing failed: {error}");
-            root.fill(&WHITE).map_err(|error| words(&error))?;
-            let mut builder = ChartBuilder::on(&root);
-            builder
-                .margin(14 * FINE)
-                .x_label_area_size(48 * FINE)
-                .y_label_area_size(FINE * if self.names.is_some() { 150 } else { 60 });
-            let [low, high] = self.x.range;
-            let [bottom, top] = self.y.range;
-            let drawn = if self.x.logarithmic {
-                let chart = builder.build_cartesian_2d((low..high).log_scale(), bottom..top);
-                chart
-                    .map_err(|error| words(&error))
-                    .and_then(|chart| self.draw(chart).map_err(|error| words(&error)))
-            } else {
-                let chart = builder.build_cartesian_2d(low..high, bottom..top);
-                chart
-                    .map_err(|error| words(&error))
-                    .and_then(|chart| self.draw(chart).map_err(|error| words(&error)))
-            };
-            drawn?;
-            root.present().map_err(|error| words(&error))?;
-        }
+        let root = SVGBackend::with_string(&mut text, (FINE * SIZE.0, FINE * SIZE.1)).into_drawing_area();
+        self.paint(&root).map_err(|error| format!("drawing failed: {error}"))?;
+        drop(root);
         // The figure is displayed at its nominal size although it was drawn in finer steps.
         let drawn = format!("width=\"{}\" height=\"{}\"", FINE * SIZE.0, FINE * SIZE.1);
         let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
         Ok(text.replacen(&drawn, &shown, 1))
+    }
+
+    fn paint(&self, root: &DrawingArea<SVGBackend<'_>, Shift>) -> DrawingResult {
+        root.fill(&WHITE)?;
+        let mut builder = ChartBuilder::on(root);
+        builder
+            .margin(14 * FINE)
+            .x_label_area_size(48 * FINE)
+            .y_label_area_size(FINE * if self.names.is_some() { 150 } else { 60 });
+        let [low, high] = self.x.range;
+        let [bottom, top] = self.y.range;
+        if self.x.logarithmic {
+            self.draw(builder.build_cartesian_2d((low..high).log_scale(), bottom..top)?)?;
+        } else {
+            self.draw(builder.build_cartesian_2d(low..high, bottom..top)?)?;
+        }
+        root.present()
     }
 
     fn holds(&self, point: &[f64; 2]) -> bool {
@@ -190,10 +195,10 @@ impl Chart {
         inside(&self.x, point[0]) && inside(&self.y, point[1])
     }
 
-    fn draw<'a, X>(
+    fn draw<'a, 'b: 'a, X>(
         &self,
-        mut chart: ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, RangedCoordf64>>,
-    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>>
+        mut chart: ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, RangedCoordf64>>,
+    ) -> DrawingResult
     where
         X: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
@@ -229,10 +234,8 @@ impl Chart {
         }
         let step = FINE as i32;
         for (at, words) in self.notes.iter().filter(|(at, _)| self.holds(at)) {
-            let style = font(15);
-            chart.draw_series([
-                EmptyElement::at((at[0], at[1])) + Text::new(words.clone(), (8 * step, -6 * step), style)
-            ])?;
+            let text = Text::new(words.clone(), (8 * step, -6 * step), font(15));
+            chart.draw_series([EmptyElement::at((at[0], at[1])) + text])?;
         }
         if self.series.iter().any(|series| !series.name.is_empty()) {
             chart
@@ -252,11 +255,11 @@ impl Chart {
         Ok(())
     }
 
-    fn series<'a, X>(
+    fn series<'a, 'b: 'a, X>(
         &self,
-        chart: &mut ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, RangedCoordf64>>,
+        chart: &mut ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, RangedCoordf64>>,
         series: &Series,
-    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>>
+    ) -> DrawingResult
     where
         X: Ranged<ValueType = f64>,
     {

@@ -70,3 +70,11 @@ pub enum ReportError {
     #[error(transparent)]
     Write(#[from] WriteError),
 }
+
+impl ReportError {
+    /// Returns what makes an error of a figure, a picture or a file from its cause.
+    pub(crate) fn of(name: &str) -> impl FnOnce(AnyError) -> Self {
+        let name = name.to_owned();
+        |cause| Self::Figure { name, cause }
+    }
+}

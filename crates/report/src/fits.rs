@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Front;
-use kinefront_model::evaluation::Quantity;
+use kinefront_model::evaluation::{Evaluation, Quantity};
 use kinefront_model::mechanism::{DESIGN_VARIABLES, DesignVariable};
 use kinefront_study::Bounds;
 
@@ -94,15 +94,11 @@ pub fn trends(front: &Front, bounds: &Bounds, quantity: Quantity) -> Vec<Trend> 
     DESIGN_VARIABLES
         .into_iter()
         .map(|variable| {
-            let points: Vec<[f64; 2]> = front
-                .shown()
-                .filter_map(|member| {
-                    Some([
-                        member.quantities.get(quantity)?,
-                        member.design.values()[variable as usize],
-                    ])
-                })
-                .collect();
+            let place = |member: &Evaluation| {
+                let along = member.quantities.get(quantity)?;
+                Some([along, member.design.values()[variable as usize]])
+            };
+            let points: Vec<[f64; 2]> = front.shown().filter_map(place).collect();
             // At a bound the value is fixed by the bound and does not show the trend.
             let [lower, upper] = bounds.range(variable);
             let near = AT_BOUND * (upper - lower);

@@ -53,10 +53,16 @@ impl Front {
         self.shown.iter()
     }
 
+    /// Returns the objectives of the designs that are shown.
+    fn objectives(&self) -> Vec<Objectives> {
+        self.shown()
+            .map(|member| DesignProblem::outcome(member).objectives)
+            .collect()
+    }
+
     /// Returns at most `most` of the designs that are shown, evenly spread, in their order.
     pub fn spread(&self, most: usize) -> Vec<Evaluation> {
-        let objectives = self.shown().map(|member| DesignProblem::outcome(member).objectives);
-        let mut places = spread(&objectives.collect::<Vec<_>>(), most);
+        let mut places = spread(&self.objectives(), most);
         places.sort_unstable();
         places.into_iter().map(|place| self.shown[place].clone()).collect()
     }
@@ -82,10 +88,7 @@ impl Front {
 
     /// Returns the designs to be pictured, each with its name: the best in each objective, and the knee.
     pub fn marked(&self, objectives: &[Objective]) -> Vec<(String, &Evaluation)> {
-        let values: Vec<Objectives> = self
-            .shown()
-            .map(|member| DesignProblem::outcome(member).objectives)
-            .collect();
+        let values = self.objectives();
         let best = |k: usize| (0..values.len()).min_by(|&a, &b| values[a][k].total_cmp(&values[b][k]));
         let named = objectives
             .iter()
@@ -155,11 +158,14 @@ impl Fronts {
 
     /// Returns the front of an architecture.
     pub fn of(&self, architecture: Architecture) -> Option<&Front> {
-        self.alone
-            .iter()
-            .find(|(other, _)| *other == architecture)
-            .map(|(_, front)| front)
+        front_of(&self.alone, architecture)
     }
+}
+
+/// Returns the front of an architecture among those of several.
+pub(super) fn front_of(alone: &[(Architecture, Front)], architecture: Architecture) -> Option<&Front> {
+    let found = alone.iter().find(|(other, _)| *other == architecture);
+    found.map(|(_, front)| front)
 }
 
 /// Returns the first of the designs that is feasible on the fine grid.
@@ -242,8 +248,7 @@ impl SearchFronts {
 
     /// Returns the front of the search over one architecture.
     pub fn of(&self, architecture: Architecture) -> Option<&Front> {
-        let found = self.alone.iter().find(|(other, _)| *other == architecture);
-        found.map(|(_, front)| front)
+        front_of(&self.alone, architecture)
     }
 }
 

@@ -215,12 +215,7 @@ impl Report {
         let study = common_study(sources)?;
         let problem = DesignProblem::new(&study)?;
         let question = Question::of(&study, &problem, sources);
-        if let (false, Some(_), [first, ..]) = (question.is_of_two(), options.sensitivity, sources) {
-            return Err(ReportError::Sensitivity {
-                name: first.name.clone(),
-                count: question.objectives.len(),
-            });
-        }
+        check_sensitivity(&options, &question, sources)?;
         let most = study.optimizer.front_designs;
         tell("verifying the fronts");
         let mut fronts = Fronts::new(sources, &problem, most).ok_or(ReportError::NothingFeasible)?;
@@ -229,21 +224,14 @@ impl Report {
             [_] => Some(fronts.together.clone()),
             _ => fronts::joint(sources, &study, &problem),
         };
-        let moga2_fronts = match moga2 {
-            [] => None,
-            _ => Some(SearchFronts::new(moga2, &study, &problem)),
-        };
+        let moga2_fronts = (!moga2.is_empty()).then(|| SearchFronts::new(moga2, &study, &problem));
         let model = problem.model().clone();
         if study.workspace.certify {
             tell("proving the workspaces");
             fronts.certify(&study, &problem);
         }
         let references = reference::all(&study, &model, &fronts);
-        let along = question.objectives[question.compared()].quantity;
-        let with_trends = fronts.alone.iter().filter(|_| question.objectives.len() > 1);
-        let trends: Vec<_> = with_trends
-            .map(|(architecture, front)| (*architecture, trends(front, &study.bounds, along)))
-            .collect();
+        let trends = trends_along(&fronts, &question, &study);
         tell("determining prices along the fronts");
         let drivers = problem.drivers_along(&fronts.priced());
         let nearby = nearby::all(&study, &problem, &fronts, tell)?;
@@ -305,10 +293,7 @@ impl Report {
                 let range = self.study.workspace.rotation_range_deg;
                 let png = picture::picture(model, evaluation, range, [width, height])
                     .and_then(|pixels| chart::pixels_to_png(width, height, &pixels))
-                    .map_err(|cause| ReportError::Figure {
-                        name: name.clone(),
-                        cause,
-                    })?;
+                    .map_err(ReportError::of(&name))?;
                 Ok(DesignPicture {
                     name,
                     caption,
@@ -318,6 +303,25 @@ impl Report {
             })
             .collect()
     }
+}
+
+/// Refuses to vary assumptions where fronts are no curves that can be compared.
+fn check_sensitivity(options: &Options, question: &Question, sources: &[Source]) -> Result<(), ReportError> {
+    if let (false, Some(_), [first, ..]) = (question.is_of_two(), options.sensitivity, sources) {
+        return Err(ReportError::Sensitivity {
+            name: first.name.clone(),
+            count: question.objectives.len(),
+        });
+    }
+    Ok(())
+}
+
+/// Returns the trends along the front of each architecture; none for one objective, whose fronts are single designs.
+fn trends_along(fronts: &Fronts, question: &Question, study: &Study) -> Vec<(Architecture, Vec<Trend>)> {
+    let along = question.objectives[question.compared()].quantity;
+    let curves = fronts.alone.iter().filter(|_| question.objectives.len() > 1);
+    let of_each = curves.map(|(architecture, front)| (*architecture, trends(front, &study.bounds, along)));
+    of_each.collect()
 }
 
 /// Returns the study that all sources have in common, with the architectures of all of them.

@@ -1,5 +1,6 @@
 //! Pictures of designs, rendered by casting rays at the solids of the scene; this needs no graphics driver.
 
+use crate::chart::extremes;
 use crate::error::AnyError;
 use glam::{DVec2, DVec3};
 use parry3d_f64::bounding_volume::Aabb;
@@ -105,12 +106,7 @@ impl Camera {
         let right = DVec3::Z.cross(back).normalize();
         let up = back.cross(right);
         let size = size.map(f64::from);
-        let across = |axis: DVec3| {
-            let places = corners.iter().map(|corner| corner.dot(axis));
-            places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| {
-                [low.min(place), high.max(place)]
-            })
-        };
+        let across = |axis: DVec3| extremes(corners.iter().map(|corner| corner.dot(axis)));
         let [x, y, z] = [right, up, back].map(across);
         let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
         let centre = right * middle(x) + up * middle(y) + back * middle(z);

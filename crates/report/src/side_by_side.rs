@@ -7,6 +7,7 @@ use kinefront_optimize::Objectives;
 use kinefront_study::{Column, EqualLevel, RunFolder, SettingDifference, Study, equal_levels};
 
 use super::chart::{Chart, ChartAxis, Mark, Series};
+use super::figures::{Figures, values};
 use super::{Figure, ReportError, Topic};
 use kinefront_model::evaluation::Scale;
 use kinefront_scene::palette;
@@ -78,49 +79,29 @@ impl SideBySide {
         let is_of_decades = first.quantity.entry().scale == Scale::Logarithmic;
         let kinds = [("fronts", false), ("fronts-log", true)];
         let kinds = kinds.into_iter().filter(|(_, decades)| is_of_decades || !decades);
-        let mut figures = Vec::new();
+        let mut figures = Figures::default();
         for (name, decades) in kinds {
-            let series: Vec<Series> = self
-                .runs
-                .iter()
-                .zip(palette::SERIES.into_iter().cycle())
-                .map(|(run, color)| Series {
-                    name: run.name.clone(),
-                    color,
-                    mark: Mark::DottedLine,
-                    points: run
-                        .front
-                        .iter()
-                        .map(|point| [first.value(point[0]), second.value(point[1])])
-                        .collect(),
+            let runs = self.runs.iter().zip(palette::SERIES.into_iter().cycle());
+            let series: Vec<Series> = runs
+                .map(|(run, color)| {
+                    let points = run.front.iter();
+                    let points = points.map(|point| [first.value(point[0]), second.value(point[1])]);
+                    Series::new(&run.name, color, Mark::DottedLine, points.collect())
                 })
                 .collect();
-            let values = |axis: usize| {
-                let points = series.iter().flat_map(|series| &series.points);
-                points.map(move |point| point[axis])
-            };
             let x = match decades {
-                true => ChartAxis::decades(label(first), values(0)),
-                false => ChartAxis::from_zero_if_near(label(first), values(0)),
+                true => ChartAxis::decades(label(first), values(&series, 0)),
+                false => ChartAxis::from_zero_if_near(label(first), values(&series, 0)),
             };
-            let y = ChartAxis::from_zero_if_near(label(second), values(1));
+            let y = ChartAxis::from_zero_if_near(label(second), values(&series, 1));
             let chart = Chart {
                 legend_above: decades,
                 ..Chart::new(x, y, series)
             };
-            let svg = chart.svg().map_err(|cause| ReportError::Figure {
-                name: name.to_owned(),
-                cause,
-            })?;
             let over = if decades { ", with a logarithmic axis" } else { "" };
-            figures.push(Figure {
-                topic: Topic::Fronts,
-                name: name.to_owned(),
-                caption: format!("Reported fronts of the runs{over}."),
-                svg,
-            });
+            figures.add(Topic::Fronts, name, format!("Reported fronts of the runs{over}"), chart)?;
         }
-        Ok(figures)
+        Ok(figures.0)
     }
 }
 

@@ -34,10 +34,7 @@ impl Report {
             };
             columns().map(cell).collect()
         });
-        let table = table_bytes(columns(), rows).map_err(|error| ReportError::Figure {
-            name: "fronts.csv".to_owned(),
-            cause: error.into(),
-        })?;
+        let table = table_bytes(columns(), rows).map_err(|error| ReportError::of("fronts.csv")(error.into()))?;
         write_whole(&folder.join("fronts.csv"), &table)?;
         // The page contains its figures and pictures. At any instant it is that of one report or of the other.
         write_whole(&folder.join("index.html"), page::html(self).as_bytes())?;
@@ -68,10 +65,7 @@ fn write_figures(folder: &Path, all: &[Figure], scale: f32) -> Result<PathBuf, R
     let figures = made(folder.join("figures"))?;
     for figure in all {
         write_whole(&figures.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
-        let png = chart::png(&figure.svg, scale).map_err(|cause| ReportError::Figure {
-            name: figure.name.clone(),
-            cause,
-        })?;
+        let png = chart::png(&figure.svg, scale).map_err(ReportError::of(&figure.name))?;
         write_whole(&figures.join(format!("{}.png", figure.name)), &png)?;
     }
     Ok(figures)

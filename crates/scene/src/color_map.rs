@@ -83,17 +83,14 @@ impl ColorMap {
                 .filter_map(|value| Some((value, self.place(value)?)))
                 .collect()
         };
-        match self.scale {
-            Scale::Linear => place(self.even()),
-            Scale::Logarithmic => {
-                let decades = place(self.decades());
-                // A narrow range contains too few of these values.
-                if decades.len() < FEWEST {
-                    place(self.even())
-                } else {
-                    decades
-                }
-            }
+        let decades = match self.scale {
+            Scale::Linear => Vec::new(),
+            Scale::Logarithmic => place(self.decades()),
+        };
+        // A narrow range contains too few decades.
+        match decades.len() < FEWEST {
+            true => place(self.even()),
+            false => decades,
         }
     }
 

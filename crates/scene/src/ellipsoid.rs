@@ -59,10 +59,8 @@ impl EllipsoidSet {
         match self.kind {
             EllipsoidKind::Stiffness => format!("stiffness ellipsoids: 0.1 m = {:.3e} N/m", 0.1 / self.scale),
             EllipsoidKind::Displacement => {
-                format!(
-                    "displacement ellipsoids under 1 N: 0.1 m = {:.3} µm",
-                    0.1 / self.scale * 1e6
-                )
+                let micrometres = 0.1 / self.scale * 1e6;
+                format!("displacement ellipsoids under 1 N: 0.1 m = {micrometres:.3} µm")
             }
         }
     }

@@ -2,12 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Label, Line, Nearest, Part, Scene, Solid, SolidShape, surroundings};
+use super::{Label, Nearest, Part, Scene, Solid, SolidShape, surroundings};
 use crate::text::number;
-use kinefront_model::clearance::{Bodies, BodySettings, Clearance, Neighbour, Stack, UprightBody};
-use kinefront_model::evaluation::{Model, PoseScalar, Unreachable};
+use kinefront_model::clearance::{Bodies, Clearance, Neighbour, Stack, UprightBody};
+use kinefront_model::evaluation::{Model, ModelSettings, PoseScalar, Unreachable};
 use kinefront_model::mechanism::{
-    AnyLeg, CrossSections, Design, JointKind, JointPoint, JointSizes, Leg, LegPart, Manipulator, MemberKind, TravelKind,
+    AnyLeg, Design, JointKind, JointPoint, Leg, LegPart, Manipulator, MemberKind, Posture, TravelKind,
 };
 use kinefront_model::spatial::{LEGS, Pose, unit};
 
@@ -24,25 +24,19 @@ const LEAST: f64 = 0.008;
 /// # Errors
 /// [`Unreachable`], which names the leg that does not reach the pose.
 pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene, Unreachable> {
-    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
-    let posture = manipulator
-        .posture(pose)
-        .map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+    let (manipulator, posture) = posed(model, design, pose)?;
     let bodies = model.bodies_of(design);
     let clearance = bodies.nearest(&manipulator, pose.position, &posture);
     let mut scene = Scene {
         nearest: Some(nearest(model, design, &bodies, &clearance)),
         ..Scene::default()
     };
-    let sizes = Sizes::in_stack(model, design, *bodies.stack());
+    let sizes = Sizes::new(model, design, *bodies.stack());
 
     // The base triangle lies at the height of the members that are attached to it.
     let base = sizes.stack.base_height(design);
     let anchors = manipulator.legs.each_ref().map(|leg| leg.frame().anchor.extend(base));
-    scene.lines.push(Line {
-        part: Part::Base,
-        points: vec![anchors[0], anchors[1], anchors[2], anchors[0]],
-    });
+    scene.add_line(Part::Base, [anchors[0], anchors[1], anchors[2], anchors[0]]);
     frame(&mut scene, DVec2::ZERO, 0.0, 0.12 * design.base_radius(), "O");
     frame(&mut scene, pose.position, pose.phi, 0.12 * design.base_radius(), "P");
 
@@ -59,24 +53,15 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
                 TravelKind::Rail => (Part::Rail, MemberKind::Slider),
                 TravelKind::Stroke => (Part::Stroke, MemberKind::TelescopicLeg),
             };
-            scene.lines.push(Line {
-                part,
-                points: [travel.from, travel.to]
-                    .map(|end| end.extend(sizes.height(kind, index)))
-                    .to_vec(),
-            });
+            let height = sizes.height(kind, index);
+            scene.add_line(part, [travel.from, travel.to].map(|end| end.extend(height)));
         }
         for body in leg.bodies(state) {
             let solids = body.parts.iter().map(|part| sizes.solid(index, part));
             scene.solids.extend(solids);
         }
         scene.solids.push(sizes.platform_bar(index, c, pose.position));
-        let mut label = |at: DVec2, text: String| {
-            scene.labels.push(Label {
-                at: at.extend(lift),
-                text,
-            })
-        };
+        let mut label = |at: DVec2, text: String| scene.add_label(at.extend(lift), text);
         let (anchor, b) = (leg.frame().anchor, state.chain.b);
         label(anchor, format!("A{number}"));
         if b != anchor {
@@ -86,6 +71,18 @@ pub fn manipulator(model: &Model, design: &Design, pose: &Pose) -> Result<Scene,
     }
     join_labels(&mut scene.labels, 0.015 * design.base_radius());
     Ok(scene)
+}
+
+/// Returns the manipulator with its posture at a pose, or the leg that does not reach it.
+pub(super) fn posed(
+    model: &Model,
+    design: &Design,
+    pose: &Pose,
+) -> Result<(Manipulator<AnyLeg>, Posture), Unreachable> {
+    let manipulator = Manipulator::<AnyLeg>::new(design, &model.settings().legs);
+    let posture = manipulator.posture(pose);
+    let posture = posture.map_err(|(leg, shortfall)| Unreachable { leg, shortfall })?;
+    Ok((manipulator, posture))
 }
 
 /// Returns the height of the labels, above all members \[m\].
@@ -113,11 +110,6 @@ fn join_labels(labels: &mut Vec<Label>, distance: f64) {
     *labels = joined;
 }
 
-/// Returns the part that a slider or carriage is.
-fn carriage(actuated: bool) -> Part {
-    if actuated { Part::Slider } else { Part::Carriage }
-}
-
 fn flat(point: DVec2) -> DVec3 {
     point.extend(0.0)
 }
@@ -125,25 +117,17 @@ fn flat(point: DVec2) -> DVec3 {
 /// Sizes and layer heights of the members of a design \[m\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes<'a> {
-    bodies: &'a BodySettings,
-    sections: &'a CrossSections,
+    settings: &'a ModelSettings,
     design: &'a Design,
-    joints: &'a JointSizes,
     stack: Stack,
 }
 
 impl<'a> Sizes<'a> {
-    pub(super) fn new(model: &'a Model, design: &'a Design) -> Self {
-        Self::in_stack(model, design, model.stack_of(design))
-    }
-
-    /// Does the same with the layers that are known: choosing them takes longer than all else.
-    pub(super) fn in_stack(model: &'a Model, design: &'a Design, stack: Stack) -> Self {
+    /// Returns the sizes with the layers of the design, which a caller may know already: choosing them takes longer than all else.
+    pub(super) fn new(model: &'a Model, design: &'a Design, stack: Stack) -> Self {
         Self {
-            bodies: &model.settings().bodies,
-            sections: &model.settings().sections,
+            settings: model.settings(),
             design,
-            joints: &model.settings().joint_sizes,
             stack,
         }
     }
@@ -155,14 +139,14 @@ impl<'a> Sizes<'a> {
 
     /// Returns the radius of the bars of a kind of member.
     pub(super) fn radius(&self, kind: MemberKind) -> f64 {
-        self.bodies.radius(kind, self.design)
+        self.settings.bodies.radius(kind, self.design)
     }
 
     fn bar(&self, leg: usize, kind: MemberKind, from: DVec2, to: DVec2, fraction: f64) -> SolidShape {
         let (z, outer) = (self.height(kind, leg), self.radius(kind));
         let section = match kind {
-            MemberKind::PlatformBar => &self.sections.platform,
-            _ => &self.sections.legs,
+            MemberKind::PlatformBar => &self.settings.sections.platform,
+            _ => &self.settings.sections.legs,
         };
         let [radius, inner] = [outer, section.inner_radius(outer)].map(|size| fraction * size);
         if section.is_square() {
@@ -184,8 +168,12 @@ impl<'a> Sizes<'a> {
 
     /// Returns half the length of a carriage on a guide that moves.
     pub(super) fn carriage_half_length(&self) -> f64 {
-        let half_width = self.bodies.radius(MemberKind::Slider, self.design);
-        (self.bodies.slider_half_length(self.design) / 3.0).max(half_width)
+        let half_width = self.radius(MemberKind::Slider);
+        (self.slider_half_length() / 3.0).max(half_width)
+    }
+
+    fn slider_half_length(&self) -> f64 {
+        self.settings.bodies.slider_half_length(self.design)
     }
 
     /// Returns a joint: its pin passes through the members it joins and is as thick as the thinner one, or thicker if it would otherwise be
@@ -193,13 +181,11 @@ impl<'a> Sizes<'a> {
     fn pin(&self, leg: usize, at: DVec2, joins: [MemberKind; 2], kind: JointKind) -> SolidShape {
         let least = LEAST * self.design.base_radius();
         let ends = joins.map(|kind| {
-            let out = (PIN * self.bodies.radius(kind, self.design)).max(1.4 * least);
+            let out = (PIN * self.radius(kind)).max(1.4 * least);
             [self.height(kind, leg) - out, self.height(kind, leg) + out]
         });
         let bars = joins.into_iter().filter(|&kind| kind != MemberKind::Slider);
-        let radius = bars.fold(f64::INFINITY, |least, kind| {
-            least.min(self.bodies.radius(kind, self.design))
-        });
+        let radius = bars.fold(f64::INFINITY, |least, kind| least.min(self.radius(kind)));
         let point = match joins {
             [_, MemberKind::PlatformBar] | [MemberKind::PlatformBar, _] => JointPoint::C,
             [first, second] if first == second => JointPoint::A,
@@ -207,7 +193,7 @@ impl<'a> Sizes<'a> {
         };
         let is_revolute = kind == JointKind::Revolute;
         let body = is_revolute
-            .then(|| self.stack.joint(leg, point, self.joints, self.design))
+            .then(|| self.stack.joint(leg, point, &self.settings.joint_sizes, self.design))
             .flatten();
         let [low, high, thick] = body.unwrap_or([f64::INFINITY, f64::NEG_INFINITY, 0.0]);
         SolidShape::Bar {
@@ -222,29 +208,19 @@ impl<'a> Sizes<'a> {
     pub(super) fn solid(&self, leg: usize, part: &LegPart) -> Solid {
         let (part, shape) = match *part {
             LegPart::Slider { at, axis, actuated } => {
-                let half_width = self.bodies.radius(MemberKind::Slider, self.design);
-                let shape = SolidShape::Block {
-                    centre: at.extend(self.height(MemberKind::Slider, leg)),
-                    half_size: DVec3::new(self.bodies.slider_half_length(self.design), half_width, half_width),
-                    angle: libm::atan2(axis.y, axis.x),
-                    inner: 0.0,
-                };
-                (carriage(actuated), shape)
+                let centre = at.extend(self.height(MemberKind::Slider, leg));
+                self.carriage(centre, axis, self.slider_half_length(), actuated)
             }
             LegPart::Tube { from, to } => (Part::Tube, self.bar(leg, MemberKind::TelescopicLeg, from, to, 1.0)),
             // The rod slides inside the tube, so it is drawn thinner.
             LegPart::Rod { from, to } => (Part::Rod, self.bar(leg, MemberKind::TelescopicLeg, from, to, ROD)),
-            LegPart::Carriage { at, axis, on, actuated } => {
-                // As wide as a slider, and shorter, so that carriages on crossing guides stay apart to the eye.
-                let half_width = self.bodies.radius(MemberKind::Slider, self.design);
-                let shape = SolidShape::Block {
-                    centre: at.extend(self.height(on, leg)),
-                    half_size: DVec3::new(self.carriage_half_length(), half_width, half_width),
-                    angle: libm::atan2(axis.y, axis.x),
-                    inner: 0.0,
-                };
-                (carriage(actuated), shape)
-            }
+            // As wide as a slider, and shorter, so that carriages on crossing guides stay apart to the eye.
+            LegPart::Carriage { at, axis, on, actuated } => self.carriage(
+                at.extend(self.height(on, leg)),
+                axis,
+                self.carriage_half_length(),
+                actuated,
+            ),
             LegPart::GuideBar { from, to, kind } => (Part::Guide, self.bar(leg, kind, from, to, 1.0)),
             LegPart::Crank { from, to } => (Part::Crank, self.bar(leg, MemberKind::Crank, from, to, 1.0)),
             LegPart::Link { from, to } => (Part::Link, self.bar(leg, MemberKind::Link, from, to, 1.0)),
@@ -262,38 +238,38 @@ impl<'a> Sizes<'a> {
                 (part, self.pin(leg, at, joins, kind))
             }
         };
-        Solid {
-            part,
-            leg: Some(leg),
-            shape,
-            value: None,
-        }
+        Solid::new(part, Some(leg), shape)
+    }
+
+    /// Returns a slider or carriage along `axis` with the part that it is.
+    fn carriage(&self, centre: DVec3, axis: DVec2, half_length: f64, actuated: bool) -> (Part, SolidShape) {
+        let half_width = self.radius(MemberKind::Slider);
+        let shape = SolidShape::Block {
+            centre,
+            half_size: DVec3::new(half_length, half_width, half_width),
+            angle: libm::atan2(axis.y, axis.x),
+            inner: 0.0,
+        };
+        (if actuated { Part::Slider } else { Part::Carriage }, shape)
     }
 
     /// Returns the platform bar that ends at a leg's `C_i`.
     pub(super) fn platform_bar(&self, leg: usize, c: DVec2, p: DVec2) -> Solid {
-        Solid {
-            part: Part::PlatformBar,
-            leg: Some(leg),
-            shape: self.bar(leg, MemberKind::PlatformBar, c, p, 1.0),
-            value: None,
-        }
+        let shape = self.bar(leg, MemberKind::PlatformBar, c, p, 1.0);
+        Solid::new(Part::PlatformBar, Some(leg), shape)
     }
 }
 
 /// Returns the motor of a revolute joint.
 pub(super) fn motor(body: &UprightBody) -> Solid {
-    Solid {
-        part: Part::ActuatedJoint,
-        leg: Some(body.member.leg),
-        shape: SolidShape::Bar {
-            from: body.at.extend(body.heights[0]),
-            to: body.at.extend(body.heights[1]),
-            radius: body.radius,
-            inner: 0.0,
-        },
-        value: None,
-    }
+    let [from, to] = body.heights.map(|height| body.at.extend(height));
+    let shape = SolidShape::Bar {
+        from,
+        to,
+        radius: body.radius,
+        inner: 0.0,
+    };
+    Solid::new(Part::ActuatedJoint, Some(body.member.leg), shape)
 }
 
 /// Returns the pair of members with the smallest clearance as a line from surface to surface.
@@ -324,14 +300,9 @@ fn nearest(model: &Model, design: &Design, bodies: &Bodies, clearance: &Clearanc
 
 fn frame(scene: &mut Scene, origin: DVec2, angle: f64, length: f64, name: &str) {
     for (part, angle) in [(Part::AxisX, angle), (Part::AxisY, angle + std::f64::consts::FRAC_PI_2)] {
-        scene.lines.push(Line {
-            part,
-            points: vec![flat(origin), flat(origin + unit(angle) * length)],
-        });
+        scene.add_line(part, [flat(origin), flat(origin + unit(angle) * length)]);
     }
     // Beside the origin, in a direction in which no platform bar lies at the home orientation.
-    scene.labels.push(Label {
-        at: flat(origin + unit(angle - std::f64::consts::FRAC_PI_4) * (0.35 * length)),
-        text: name.to_owned(),
-    });
+    let beside = unit(angle - std::f64::consts::FRAC_PI_4) * (0.35 * length);
+    scene.add_label(flat(origin + beside), name);
 }

@@ -70,30 +70,20 @@ impl SolidShape {
     pub fn seen_from(&self, origin: DVec2, angle: f64) -> SolidShape {
         let back = Rotation::new(-angle);
         let place = |point: DVec3| back.apply(point.truncate() - origin).extend(point.z);
-        match *self {
-            SolidShape::Bar {
-                from,
-                to,
-                radius,
-                inner,
-            } => SolidShape::Bar {
-                from: place(from),
-                to: place(to),
-                radius,
-                inner,
-            },
+        let mut seen = *self;
+        match &mut seen {
+            SolidShape::Bar { from, to, .. } => {
+                *from = place(*from);
+                *to = place(*to);
+            }
             SolidShape::Block {
-                centre,
-                half_size,
-                angle: turned,
-                inner,
-            } => SolidShape::Block {
-                centre: place(centre),
-                half_size,
-                angle: turned - angle,
-                inner,
-            },
+                centre, angle: turned, ..
+            } => {
+                *centre = place(*centre);
+                *turned -= angle;
+            }
         }
+        seen
     }
 }
 
@@ -133,36 +123,15 @@ fn bar(from: DVec3, to: DVec3, radius: f64, inner: f64) -> Mesh {
     }
     for k in 0..SIDES {
         let next = (k + 1) % SIDES;
-        let at = |end: DVec3, k: usize, radius: f64| end + spokes[k] * radius;
+        // The corners at one end and in one radius, at this spoke and at the next one.
+        let at = |end: DVec3, radius: f64| [k, next].map(|k| end + spokes[k] * radius);
+        let [[a, b], [c, d]] = [at(from, inner), at(to, inner)];
+        let [[outer_a, outer_b], [outer_c, outer_d]] = [at(from, radius), at(to, radius)];
         let middle = (spokes[k] + spokes[next]).normalize_or(DVec3::X);
         // Inner surface, then both end faces.
-        mesh.face(
-            &[
-                at(from, k, inner),
-                at(to, k, inner),
-                at(to, next, inner),
-                at(from, next, inner),
-            ],
-            -middle,
-        );
-        mesh.face(
-            &[
-                at(to, k, inner),
-                at(to, k, radius),
-                at(to, next, radius),
-                at(to, next, inner),
-            ],
-            axis,
-        );
-        mesh.face(
-            &[
-                at(from, k, inner),
-                at(from, next, inner),
-                at(from, next, radius),
-                at(from, k, radius),
-            ],
-            -axis,
-        );
+        mesh.face(&[a, c, d, b], -middle);
+        mesh.face(&[c, outer_c, outer_d, d], axis);
+        mesh.face(&[a, b, outer_b, outer_a], -axis);
     }
     mesh
 }
@@ -200,36 +169,14 @@ fn open_ends(mesh: &mut Mesh, centre: DVec3, [along, across, up]: [DVec3; 3], ha
         centre + along * (end * half[0]) + across * (s * y) + up * (t * z)
     };
     for corner in 0..4 {
-        let outer = |end: f64, corner: usize| at(end, corner, half[1], half[2]);
-        let hollow = |end: f64, corner: usize| at(end, corner, inner, inner);
-        let (first, second) = (corner, corner + 1);
-        mesh.face(
-            &[
-                outer(1.0, first),
-                outer(1.0, second),
-                hollow(1.0, second),
-                hollow(1.0, first),
-            ],
-            along,
-        );
-        mesh.face(
-            &[
-                outer(-1.0, first),
-                hollow(-1.0, first),
-                hollow(-1.0, second),
-                outer(-1.0, second),
-            ],
-            -along,
-        );
-        let inwards = (2.0 * centre - hollow(0.0, first) - hollow(0.0, second)).normalize_or(DVec3::Z);
-        mesh.face(
-            &[
-                hollow(-1.0, first),
-                hollow(1.0, first),
-                hollow(1.0, second),
-                hollow(-1.0, second),
-            ],
-            inwards,
-        );
+        let outer = |end: f64| [corner, corner + 1].map(|corner| at(end, corner, half[1], half[2]));
+        let hollow = |end: f64| [corner, corner + 1].map(|corner| at(end, corner, inner, inner));
+        let [[a, b], [c, d]] = [hollow(-1.0), hollow(1.0)];
+        let [[outer_a, outer_b], [outer_c, outer_d]] = [outer(-1.0), outer(1.0)];
+        mesh.face(&[outer_c, outer_d, d, c], along);
+        mesh.face(&[outer_a, a, b, outer_b], -along);
+        let [first, second] = hollow(0.0);
+        let inwards = (2.0 * centre - first - second).normalize_or(DVec3::Z);
+        mesh.face(&[a, c, d, b], inwards);
     }
 }

@@ -69,21 +69,12 @@ pub fn example(model: &Model, architecture: Architecture) -> Option<(Design, Pos
             Design::new(architecture, WorkingMode::new(plus), [1.0, 0.36, length, 0.03, 0.03]).ok()
         })
     });
-    let poses = |design: Design| {
-        (0..TURNS).map(move |k| {
-            (
-                design,
-                Pose::new(0.0, 0.0, f64::from(k) * std::f64::consts::TAU / f64::from(TURNS)),
-            )
-        })
-    };
+    let pose = |k: u32| Pose::new(0.0, 0.0, f64::from(k) * std::f64::consts::TAU / f64::from(TURNS));
+    let poses = |design: Design| (0..TURNS).map(move |k| (design, pose(k)));
     let rated = designs.flat_map(poses).filter_map(|(design, pose)| {
-        let found = model.pose(&design, &pose).ok()?;
-        Some((
-            found.values[PoseScalar::Dexterity].min(2.0 * found.values[PoseScalar::Reach]),
-            design,
-            pose,
-        ))
+        let values = model.pose(&design, &pose).ok()?.values;
+        let rate = values[PoseScalar::Dexterity].min(2.0 * values[PoseScalar::Reach]);
+        Some((rate, design, pose))
     });
     let best = rated.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
     Some((best.1, best.2))

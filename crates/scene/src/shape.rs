@@ -87,6 +87,16 @@ pub struct Solid {
 }
 
 impl Solid {
+    /// Creates a solid that has the colour of its part.
+    pub(super) fn new(part: Part, leg: Option<usize>, shape: SolidShape) -> Self {
+        Self {
+            part,
+            leg,
+            shape,
+            value: None,
+        }
+    }
+
     /// Returns whether the solid shows a member, or a part of it.
     pub fn shows(&self, member: &MemberId) -> bool {
         let kinds: &[MemberKind] = match self.part {
@@ -145,6 +155,16 @@ pub struct Scene {
 }
 
 impl Scene {
+    pub(super) fn add_line(&mut self, part: Part, points: impl IntoIterator<Item = DVec3>) {
+        let points = points.into_iter().collect();
+        self.lines.push(Line { part, points });
+    }
+
+    pub(super) fn add_label(&mut self, at: DVec3, text: impl Into<String>) {
+        let text = text.into();
+        self.labels.push(Label { at, text });
+    }
+
     /// Returns the solids that represent a part.
     pub fn solids_of(&self, part: Part) -> impl Iterator<Item = &Solid> {
         self.solids.iter().filter(move |solid| solid.part == part)
@@ -160,16 +180,14 @@ impl Scene {
                 (Part::Base | Part::Obstacle, _) => [0.003 * base_radius, 0.0],
                 _ => [0.0; 2],
             };
-            line.points.windows(2).map(move |ends| Solid {
-                part: line.part,
-                leg: None,
-                shape: SolidShape::Bar {
+            line.points.windows(2).map(move |ends| {
+                let shape = SolidShape::Bar {
                     from: ends[0],
                     to: ends[1],
                     radius,
                     inner,
-                },
-                value: None,
+                };
+                Solid::new(line.part, None, shape)
             })
         });
         bars.filter(|bar| bar.shape.has_volume()).collect()

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Label, Line, Part, Scene};
+use super::{Part, Scene};
 use kinefront_model::clearance::{ObstacleShape, Surroundings};
 use kinefront_model::spatial::unit;
 
@@ -29,10 +29,7 @@ pub(super) fn add(scene: &mut Scene, surroundings: &Surroundings, [lowest, highe
             }
         };
         prism(scene, Part::Obstacle, &corners, uprights, heights);
-        scene.labels.push(Label {
-            at: middle.extend(heights[1]),
-            text: obstacle.name.to_string(),
-        });
+        scene.add_label(middle.extend(heights[1]), obstacle.name.to_string());
     }
     if let Some(room) = &surroundings.room {
         prism(scene, Part::Room, room.corners(), 1, [lowest, highest]);
@@ -43,15 +40,9 @@ pub(super) fn add(scene: &mut Scene, surroundings: &Surroundings, [lowest, highe
 fn prism(scene: &mut Scene, part: Part, corners: &[DVec2], every: usize, heights: [f64; 2]) {
     for height in heights {
         let closed = corners.iter().chain(corners.first());
-        scene.lines.push(Line {
-            part,
-            points: closed.map(|corner| corner.extend(height)).collect(),
-        });
+        scene.add_line(part, closed.map(|corner| corner.extend(height)));
     }
     for corner in corners.iter().step_by(every) {
-        scene.lines.push(Line {
-            part,
-            points: heights.map(|height| corner.extend(height)).to_vec(),
-        });
+        scene.add_line(part, heights.map(|height| corner.extend(height)));
     }
 }

@@ -27,12 +27,8 @@ pub fn tour(model: &Model, design: &Design, cylinder: &RegularCylinder, steps: u
     let mut radii = (0..100).map(|k| cylinder.radius * (1.0 - 1e-3 * f64::from(k)));
     radii.find_map(|radius| {
         let poses = path(&RegularCylinder { radius, ..*cylinder }, steps.max(8));
-        let reached = poses.iter().all(|pose| manipulator.posture(pose).is_ok());
-        let forward_error = if reached {
-            check(&manipulator, design, &poses)?
-        } else {
-            return None;
-        };
+        let is_reached = poses.iter().all(|pose| manipulator.posture(pose).is_ok());
+        let forward_error = is_reached.then(|| check(&manipulator, design, &poses))??;
         Some(Tour {
             poses,
             radius,

@@ -72,7 +72,7 @@ impl Vibrations {
             })
             .collect();
         modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
-        let sizes = Sizes::new(model, design);
+        let sizes = Sizes::new(model, design, model.stack_of(design));
         let chain = design.architecture().chain();
         let kinds = [
             chain.proximal.unwrap_or(MemberKind::Crank),

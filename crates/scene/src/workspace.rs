@@ -31,14 +31,11 @@ pub fn regular_workspace(evaluation: &Evaluation, rotation_range_deg: f64) -> Op
 
 /// Returns the corners of a prescribed region that is no disc, in the base frame \[m\].
 pub fn region_corners(model: &Model) -> Option<Vec<DVec2>> {
-    match &model.settings().workspace.region {
+    let workspace = &model.settings().workspace;
+    match &workspace.region {
         Region::Polygon(polygon) => {
             let corners = polygon.corners().iter();
-            Some(
-                corners
-                    .map(|corner| model.settings().workspace.centre + *corner)
-                    .collect(),
-            )
+            Some(corners.map(|corner| workspace.centre + *corner).collect())
         }
         Region::Largest | Region::Disc(_) => None,
     }

@@ -1,12 +1,12 @@
 //! Dimensions of the plan view: each is a dimension of CAD, with the lines and the text that it shows.
 
-use ::dxf::entities::{DimensionBase, Entity, EntityType, Line, RotatedDimension, Solid, Text};
+use ::dxf::entities::{DimensionBase, EntityType, Line, RotatedDimension, Solid, Text};
 use ::dxf::enums::{AttachmentPoint, DimensionType, HorizontalTextJustification, VerticalTextJustification};
 use ::dxf::tables::DimStyle;
 use ::dxf::{Block, Point};
 use glam::DVec2;
 
-use super::{MM, Prepared, Sheet, point};
+use super::{MM, Prepared, Sheet, entity, point};
 use kinefront_model::mechanism::{AnyLeg, Manipulator};
 
 const LAYER: &str = "DIMENSIONS";
@@ -69,11 +69,7 @@ impl Sheet {
             flags: 1,
             entities: shown([from, to], [start, end], height)
                 .chain([text(middle, readable, height, &words)])
-                .map(|kind| {
-                    let mut entity = Entity::new(kind);
-                    LAYER.clone_into(&mut entity.common.layer);
-                    entity
-                })
+                .map(|kind| entity(LAYER, kind))
                 .collect(),
             ..Block::default()
         };

@@ -10,7 +10,7 @@ use ::dxf::tables::Layer;
 use ::dxf::{Color, Drawing, Point};
 use glam::{DVec2, DVec3};
 
-use super::format::{AnyError, Format};
+use super::format::{AnyError, Contents, Format};
 use super::prepared::Prepared;
 use kinefront_scene::{Part, Scene, SolidShape};
 
@@ -20,9 +20,7 @@ pub(super) const FORMAT: Format = Format {
     name: "DXF",
     title: "DXF, plan view with dimensions",
     lost: Some("joints, actuators and heights; the file contains only the plan view"),
-    is_text: true,
-    needs_bars: false,
-    joints_from_zero: false,
+    contents: Contents::Text,
     write,
 };
 
@@ -110,9 +108,7 @@ impl Sheet {
     }
 
     fn add(&mut self, layer: &str, kind: EntityType) {
-        let mut entity = Entity::new(kind);
-        layer.clone_into(&mut entity.common.layer);
-        self.drawing.add_entity(entity);
+        self.drawing.add_entity(entity(layer, kind));
     }
 
     fn manipulator(&mut self, scene: &Scene) {
@@ -194,6 +190,12 @@ impl Sheet {
         };
         self.add(layer, EntityType::Text(text));
     }
+}
+
+fn entity(layer: &str, kind: EntityType) -> Entity {
+    let mut entity = Entity::new(kind);
+    layer.clone_into(&mut entity.common.layer);
+    entity
 }
 
 fn point(at: DVec2) -> Point {

@@ -34,20 +34,16 @@ impl Sheet {
         let rule = |sheet: &mut Sheet, y: f64| {
             sheet.line(LAYER, DVec2::new(corner.x, y), DVec2::new(corner.x + width, y));
         };
+        let beginning = |below: f64| DVec2::new(corner.x + 0.5 * height, below + 0.4 * height);
         rule(self, below);
         for words in &facts {
             below -= step;
-            self.text(
-                LAYER,
-                DVec2::new(corner.x + 0.5 * height, below + 0.4 * height),
-                height,
-                words,
-            );
+            self.text(LAYER, beginning(below), height, words);
         }
         rule(self, below);
         for row in &parts {
             below -= step;
-            let mut at = DVec2::new(corner.x + 0.5 * height, below + 0.4 * height);
+            let mut at = beginning(below);
             for (cell, column) in row.iter().zip(columns) {
                 if !cell.is_empty() {
                     self.text(LAYER, at, height, cell);

@@ -1,6 +1,6 @@
 //! Fronts of whole searches: completed candidates, the paper's designs, fronts without collisions.
 
-use kinefront_model::evaluation::{Constraint, Evaluation, GridChoice};
+use kinefront_model::evaluation::{Constraint, Evaluation, GridChoice, Model};
 use kinefront_model::mechanism::Design;
 use kinefront_model::spatial::Pose;
 use kinefront_optimize::{FrontDe, FrontDeSettings, Problem, Target, Variable, run};
@@ -64,6 +64,23 @@ fn the_papers_designs_are_dominated() {
     }
 }
 
+/// Counts the poses with an overlap of a number of poses drawn from the regular workspace of a design.
+fn overlaps_of(model: &Model, member: &Evaluation, mut random: ChaCha8Rng, poses: usize) -> usize {
+    let home = member.home.expect("feasible");
+    let half_turn = 0.5 * model.settings().workspace.rotation_range_deg.to_radians();
+    let drawn = (0..poses).map(|_| {
+        let radius = member.workspace_radius() * between(&mut random, 0.0, 1.0).sqrt();
+        let angle = between(&mut random, 0.0, std::f64::consts::TAU);
+        let phi = home.phi + between(&mut random, -half_turn, half_turn);
+        Pose::new(radius * angle.cos(), radius * angle.sin(), phi)
+    });
+    let overlaps = drawn.filter(|pose| {
+        let report = model.pose(&member.design, pose).expect("in the workspace");
+        oracle(model, &member.design, pose, &report, Fault::None).least < 0.0
+    });
+    overlaps.count()
+}
+
 /// On the verified front of a study with g7 no pose overlaps, of a million drawn at random from the regular workspaces;
 /// without it most designs of its front collide, and are known to.
 #[test]
@@ -100,30 +117,11 @@ fn a_front_with_clearance_has_no_overlap_on_a_million_poses() {
         .enumerate()
         .map(|(index, member)| {
             assert!(clearance(member) >= least);
-            let mut random = ChaCha8Rng::seed_from_u64(index as u64);
-            let home = member.home.expect("feasible");
-            let half_turn = 0.5 * model.settings().workspace.rotation_range_deg.to_radians();
-            let drawn = (0..each).map(|_| {
-                let radius = member.workspace_radius() * between(&mut random, 0.0, 1.0).sqrt();
-                let angle = between(&mut random, 0.0, std::f64::consts::TAU);
-                let phi = home.phi + between(&mut random, -half_turn, half_turn);
-                Pose::new(radius * angle.cos(), radius * angle.sin(), phi)
-            });
-            drawn
-                .filter(|pose| {
-                    let report = model.pose(&member.design, pose).expect("in the workspace");
-                    oracle(&model, &member.design, pose, &report, Fault::None).least < 0.0
-                })
-                .count()
+            overlaps_of(&model, member, ChaCha8Rng::seed_from_u64(index as u64), each)
         })
         .sum();
-    assert_eq!(
-        overlaps,
-        0,
-        "of {} poses of {} designs",
-        each * members.len(),
-        members.len()
-    );
+    let poses = each * members.len();
+    assert_eq!(overlaps, 0, "of {poses} poses of {} designs", members.len());
 
     let colliding = front(&study(false));
     let found: Vec<&Evaluation> = colliding.iter().filter(|member| clearance(member) < 0.0).collect();

@@ -3,25 +3,12 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::Sample;
+use super::{Sample, Sampler};
 use kinefront_model::lanes::padded_length;
 use kinefront_model::mechanism::ReachReason;
 
 /// Number of halvings along a side that the edge of reach cuts: an accuracy of 2⁻³² of a cell.
 const HALVINGS: u32 = 32;
-
-/// The surface to mesh: it has a sample at every reachable position.
-pub(super) trait Surface: Sync {
-    /// Returns the samples at many positions; the length of the columns is a multiple of
-    /// [`MAX_LANES`](kinefront_model::lanes::MAX_LANES).
-    fn row(&self, xs: &[f64], ys: &[f64]) -> Vec<Option<Sample>>;
-    /// Returns the sample at one position.
-    fn at(&self, position: DVec2) -> Option<Sample>;
-    /// Returns whether [`Surface::at`] has a sample.
-    fn reaches(&self, position: DVec2) -> bool;
-    /// Returns why a position is unreachable; a position within rounding of the edge may have no reason.
-    fn reason(&self, position: DVec2) -> Option<ReachReason>;
-}
 
 /// Nodes of a grid, row by row from the lower left corner.
 pub(super) struct NodeGrid {
@@ -86,36 +73,10 @@ pub(super) struct FieldMesh {
 impl FieldMesh {
     /// Builds the mesh of the reachable part of `surface`. Rows are computed in parallel; the result does not depend on
     /// their distribution over threads.
-    pub(super) fn new(layout: &NodeGrid, surface: &impl Surface) -> Self {
+    pub(super) fn new(layout: &NodeGrid, surface: &Sampler<'_>) -> Self {
         let count = layout.columns * layout.rows;
-        let nodes: Vec<Option<Sample>> = (0..layout.rows)
-            .into_par_iter()
-            .flat_map_iter(|row| {
-                let first = row * layout.columns;
-                let position = |column: usize| layout.position(first + column.min(layout.columns - 1));
-                let (xs, ys): (Vec<f64>, Vec<f64>) = (0..padded_length(layout.columns))
-                    .map(|column| position(column).into())
-                    .unzip();
-                surface.row(&xs, &ys).into_iter().take(layout.columns)
-            })
-            .collect();
-        let cuts: Vec<Cut> = (0..count)
-            .into_par_iter()
-            .flat_map_iter(|node| {
-                let nodes = &nodes;
-                layout
-                    .neighbours(node)
-                    .into_iter()
-                    .flatten()
-                    .filter_map(move |other| match (nodes[node], nodes[other]) {
-                        (Some(sample), None) => Some((node, other, sample)),
-                        (None, Some(sample)) => Some((other, node, sample)),
-                        _ => None,
-                    })
-                    .map(move |(inner, outer, sample)| cut(layout, surface, inner, outer, sample))
-            })
-            .collect();
-
+        let nodes = samples(layout, surface);
+        let cuts = cuts(layout, surface, &nodes);
         let mut mesh = FieldMesh {
             vertices: Vec::with_capacity(count),
             triangles: Vec::with_capacity(2 * count),
@@ -185,8 +146,34 @@ impl FieldMesh {
     }
 }
 
+/// Returns the samples at the nodes.
+fn samples(layout: &NodeGrid, surface: &Sampler<'_>) -> Vec<Option<Sample>> {
+    let row = |row: usize| {
+        let first = row * layout.columns;
+        let position = |column: usize| layout.position(first + column.min(layout.columns - 1));
+        let (xs, ys): (Vec<f64>, Vec<f64>) = (0..padded_length(layout.columns))
+            .map(|column| position(column).into())
+            .unzip();
+        surface.row(&xs, &ys).into_iter().take(layout.columns)
+    };
+    (0..layout.rows).into_par_iter().flat_map_iter(row).collect()
+}
+
+/// Finds the points at which the edge of reach cuts the sides of the grid.
+fn cuts(layout: &NodeGrid, surface: &Sampler<'_>, nodes: &[Option<Sample>]) -> Vec<Cut> {
+    let at_node = |node: usize| {
+        let neighbours = layout.neighbours(node).into_iter().flatten();
+        neighbours.filter_map(move |other| match (nodes[node], nodes[other]) {
+            (Some(sample), None) => Some(cut(layout, surface, node, other, sample)),
+            (None, Some(sample)) => Some(cut(layout, surface, other, node, sample)),
+            _ => None,
+        })
+    };
+    (0..nodes.len()).into_par_iter().flat_map_iter(at_node).collect()
+}
+
 /// Finds the last reachable point on the side from a reachable node to an unreachable one.
-fn cut(layout: &NodeGrid, surface: &impl Surface, inner: usize, outer: usize, sample: Sample) -> Cut {
+fn cut(layout: &NodeGrid, surface: &Sampler<'_>, inner: usize, outer: usize, sample: Sample) -> Cut {
     let (mut inside, mut outside) = (layout.position(inner), layout.position(outer));
     for _ in 0..HALVINGS {
         let position = 0.5 * (inside + outside);

@@ -12,7 +12,7 @@ mod mesh;
 use glam::DVec2;
 
 use self::contour::{chains, contour};
-use self::mesh::{FieldMesh, NodeGrid, Surface};
+use self::mesh::{FieldMesh, NodeGrid};
 use super::Field;
 use kinefront_model::evaluation::{Model, PoseScalar, PoseValues};
 use kinefront_model::mechanism::{Design, ReachReason};
@@ -73,11 +73,8 @@ impl Heatmap {
     /// Returns the smallest and the largest value; `None` if no position is reachable.
     pub fn range(&self) -> Option<[f64; 2]> {
         let first = *self.values.first()?;
-        Some(
-            self.values
-                .iter()
-                .fold([first; 2], |[low, high], &value| [low.min(value), high.max(value)]),
-        )
+        let widened = |[low, high]: [f64; 2], value: &f64| [low.min(*value), high.max(*value)];
+        Some(self.values.iter().fold([first; 2], widened))
     }
 }
 
@@ -116,9 +113,9 @@ impl<'a> Sampler<'a> {
             determinant: values[PoseScalar::Determinant],
         }
     }
-}
 
-impl Surface for Sampler<'_> {
+    /// Returns the samples at many positions; the length of the columns is a multiple of
+    /// [`MAX_LANES`](kinefront_model::lanes::MAX_LANES).
     fn row(&self, xs: &[f64], ys: &[f64]) -> Vec<Option<Sample>> {
         let mut values = ValueColumns::default();
         self.evaluator.evaluate_positions(&self.arms, xs, ys, &mut values);
@@ -127,6 +124,7 @@ impl Surface for Sampler<'_> {
             .collect()
     }
 
+    /// Returns the sample at one position; `None` where it is unreachable.
     fn at(&self, position: DVec2) -> Option<Sample> {
         let values = self.evaluator.evaluate_position(&self.arms, position).ok()?;
         Some(self.of(&values))
@@ -136,12 +134,11 @@ impl Surface for Sampler<'_> {
         self.evaluator.reaches(&self.arms, position)
     }
 
+    /// Returns why a position is unreachable; a position within rounding of the edge may have no reason.
     fn reason(&self, position: DVec2) -> Option<ReachReason> {
         self.evaluator.reason(&self.arms, position)
     }
-}
 
-impl Sampler<'_> {
     fn heatmap(&self, phi: f64, settings: HeatmapSettings) -> Heatmap {
         let mut heatmap = Heatmap {
             field: self.field,

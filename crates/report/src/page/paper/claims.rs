@@ -6,22 +6,25 @@ use super::super::percent;
 use crate::{Report, Trend};
 use kinefront_model::mechanism::{Architecture, DesignVariable};
 
-/// Returns how well a fit holds, in words and as a CSS class.
-fn verdict(r_squared: f64) -> (&'static str, &'static str) {
-    match r_squared {
+/// Judges the claim that a variable is linear in `R_w`: the CSS class of the verdict, and its words. `None` without a fit.
+fn linear_verdict(trend: &Trend) -> Option<(&'static str, String)> {
+    let r_squared = trend.linear.as_ref()?.r_squared;
+    let (class, word) = match r_squared {
         r if r >= 0.95 => ("holds", "holds"),
-        r if r >= 0.8 => ("holds roughly", "partly"),
-        _ => ("does not hold", "fails"),
-    }
+        r if r >= 0.8 => ("partly", "holds roughly"),
+        _ => ("fails", "does not hold"),
+    };
+    Some((class, format!("{r_squared:.2}, {word}")))
 }
 
-/// Returns the verdict on the claim that a variable is quadratic in `R_w`, and its style.
-fn quadratic_verdict(holds: bool) -> (&'static str, &'static str) {
-    if holds {
-        ("holds", "holds")
-    } else {
-        ("an upward parabola is not clearly better", "fails")
-    }
+/// Judges in the same way the claim that a variable is quadratic in `R_w`.
+fn quadratic_verdict(trend: &Trend) -> Option<(&'static str, String)> {
+    let (class, words) = match trend.is_quadratic()? {
+        true => ("holds", "holds"),
+        false => ("fails", "an upward parabola is not clearly better"),
+    };
+    let [parabola, line] = [trend.quadratic.as_ref()?, trend.linear.as_ref()?].map(|fit| fit.r_squared);
+    Some((class, format!("{parabola:.3} and {line:.3}, {words}")))
 }
 
 /// Returns the reason why there is no fit.
@@ -33,21 +36,39 @@ fn unknown(trend: &Trend) -> &'static str {
     }
 }
 
+/// Iterates over the trends of all variables along the fronts of all architectures.
+fn trends(report: &Report) -> impl Iterator<Item = (&Architecture, &Trend)> {
+    let of_each = report.trends.iter();
+    of_each.flat_map(|(architecture, trends)| trends.iter().map(move |trend| (architecture, trend)))
+}
+
+/// Lists how well fits to the bars of the platform or to the other variables hold, or why there is no fit.
+fn fits(report: &Report, to_platform_bars: bool, judge: fn(&Trend) -> Option<(&'static str, String)>) -> Markup {
+    let is_listed = |(_, trend): &(&Architecture, &Trend)| {
+        (trend.variable == DesignVariable::PlatformBarRadius) == to_platform_bars
+    };
+    html! {
+        @for (index, (architecture, trend)) in trends(report).filter(is_listed).enumerate() {
+            @if index > 0 { "; " }
+            @if !to_platform_bars { (trend.variable.symbol()) " of the " }
+            (architecture) " "
+            @match judge(trend) {
+                Some((class, words)) => span class=(class) { (words) }
+                None => (unknown(trend))
+            }
+        }
+    }
+}
+
 /// Checks the claims of the paper.
 pub(super) fn claims(report: &Report) -> Markup {
-    let trends = || {
-        report
-            .trends
-            .iter()
-            .flat_map(|(architecture, trends)| trends.iter().map(move |trend| (architecture, trend)))
-    };
     html! { div.scroll { table {
         thead { tr { th { "claim of the paper" } th { "result here" } } }
         tbody {
             (comparisons(report))
             tr {
                 td { "Every design variable increases with R_w." }
-                @let ranked: Vec<_> = trends().filter_map(|(architecture, trend)| Some((architecture, trend, trend.rank_correlation?))).collect();
+                @let ranked: Vec<_> = trends(report).filter_map(|(architecture, trend)| Some((architecture, trend, trend.rank_correlation?))).collect();
                 @match ranked.iter().min_by(|a, b| a.2.total_cmp(&b.2)) {
                     Some((architecture, trend, least)) => {
                         @let class = if *least > 0.95 { "holds" } else if *least > 0.6 { "partly" } else { "fails" };
@@ -61,43 +82,11 @@ pub(super) fn claims(report: &Report) -> Markup {
             }
             tr {
                 td { "R, r, L_b and r_j are almost linear in R_w." }
-                td {
-                    "R² of straight lines: "
-                    @for (index, (architecture, trend)) in trends()
-                        .filter(|(_, trend)| trend.variable != DesignVariable::PlatformBarRadius)
-                        .enumerate()
-                    {
-                        @if index > 0 { "; " }
-                        (trend.variable.symbol()) " of the " (architecture) " "
-                        @match &trend.linear {
-                            Some(fit) => {
-                                @let (word, class) = verdict(fit.r_squared);
-                                span class=(class) { (format!("{:.2}, {word}", fit.r_squared)) }
-                            }
-                            None => (unknown(trend))
-                        }
-                    }
-                }
+                td { "R² of straight lines: " (fits(report, false, linear_verdict)) }
             }
             tr {
                 td { "r_p is quadratic rather than linear in R_w." }
-                td {
-                    "R² of the parabola and of the straight line: "
-                    @for (index, (architecture, trend)) in trends()
-                        .filter(|(_, trend)| trend.variable == DesignVariable::PlatformBarRadius)
-                        .enumerate()
-                    {
-                        @if index > 0 { "; " }
-                        (architecture) " "
-                        @match (&trend.quadratic, &trend.linear, trend.is_quadratic()) {
-                            (Some(parabola), Some(line), Some(holds)) => {
-                                @let (word, class) = quadratic_verdict(holds);
-                                span class=(class) { (format!("{:.3} and {:.3}, {word}", parabola.r_squared, line.r_squared)) }
-                            }
-                            _ => (unknown(trend))
-                        }
-                    }
-                }
+                td { "R² of the parabola and of the straight line: " (fits(report, true, quadratic_verdict)) }
             }
         }
     } } }

@@ -47,7 +47,7 @@ fn states_its_problem(study: &Study) -> bool {
 /// Lists where a reader of the paper finds each of its figures and tables on the page.
 fn guide(report: &Report) -> Markup {
     let whole = report.moga2.is_some();
-    let mut places = vec![
+    let places = [
         ("Fig. 1, the manipulators", "pictures", "Pictures of designs"),
         (
             "Fig. 2 to 4, flexible models of the legs",
@@ -73,18 +73,15 @@ fn guide(report: &Report) -> Markup {
             "Design variables along the fronts",
         ),
         ("Tab. 1, bounds", "made", "How this report was made"),
+        (
+            "Tab. 2, the parameters of the algorithm",
+            "paper",
+            "Comparison with the 2010 paper",
+        ),
         ("Tab. 3, three Pareto-optimal designs", "designs", "Reference designs"),
     ];
-    if whole {
-        places.insert(
-            9,
-            (
-                "Tab. 2, the parameters of the algorithm",
-                "paper",
-                "Comparison with the 2010 paper",
-            ),
-        );
-    }
+    // Only a report from scratch has the parameters of the paper's algorithm.
+    let places = places.into_iter().filter(|(_, id, _)| whole || *id != "paper");
     html! {
         p {
             "Damien Chablat, Stéphane Caro, Raza Ur-Rehman and Philippe Wenger: "

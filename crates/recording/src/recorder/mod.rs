@@ -1,5 +1,7 @@
 //! Writes the events of a run to a `.rrd` file as they arrive.
 
+mod texts;
+
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,11 +15,10 @@ use super::point::{FrontPoint, PlotPoint};
 use super::rows::RowBuffer;
 use super::writer::{ALWAYS, Moment, RecordingError, RecordingWriter};
 use super::{blueprint, colors, columns, design, paths, timelines};
-use kinefront_model::evaluation::{Constraint, Evaluation, Quantity};
+use kinefront_model::evaluation::Evaluation;
 use kinefront_model::mechanism::Architecture;
-use kinefront_scene::text::number;
 use kinefront_study::{
-    Batch, Column, Drivers, Event, GenerationSummary, PreparedStudy, Row, RunSummary, RunWriter, Study, TableRow,
+    Batch, Drivers, Event, GenerationSummary, PreparedStudy, Row, RunSummary, RunWriter, Study, TableRow,
 };
 
 /// Number of designs after which the rows that were collected are written, large enough to keep the file's index small.
@@ -113,7 +114,7 @@ impl Recorder {
         let names = [plot, &hypervolume];
         let bounds = Plot::bounds();
         blueprint::send_run_layout(writer.stream(), &clouds, names, bounds, study.bounds.R_m[1])?;
-        writer.text(paths::STUDY, ALWAYS, &study_text(study)?)?;
+        writer.text(paths::STUDY, ALWAYS, &texts::study(study)?)?;
         Ok(Self {
             writer,
             study: prepared,
@@ -199,14 +200,8 @@ impl Recorder {
         let infeasible: Vec<PlotPoint> = points
             .filter(|point| !point.is_feasible && self.frame.holds(point))
             .collect();
-        let [r, g, b] = INFEASIBLE_COLOR;
-        self.cloud(
-            paths::INFEASIBLE,
-            &moment,
-            &infeasible,
-            rerun::Color::from_rgb(r, g, b),
-            1.5,
-        );
+        let color = colors::rgb(INFEASIBLE_COLOR);
+        self.cloud(paths::INFEASIBLE, &moment, &infeasible, color, 1.5);
         self.pending.extend(batch.entries());
     }
 
@@ -223,10 +218,7 @@ impl Recorder {
             self.frame_changed = false;
         }
         if self.front_changed {
-            self.rows
-                .add(paths::FRONT_DESIGNS, &moment, &self.frame.front_points(&self.front));
-            self.rows
-                .add(paths::FRONT_LINE, &moment, &self.frame.staircase(&self.front));
+            self.add_front(&moment);
             self.front_changed = false;
         }
         self.curves(&moment, summary);
@@ -250,7 +242,7 @@ impl Recorder {
         }
         self.write_collected()?;
         self.writer
-            .text(paths::SUMMARY, ALWAYS, &summary_text(self.study.study(), summary))?;
+            .text(paths::SUMMARY, ALWAYS, &texts::summary(self.study.study(), summary))?;
         for (name, _) in ALONG_FRONT {
             let lines = SeriesLines::new().with_names([name]);
             self.writer.row(&along_front(name), ALWAYS, &lines)?;
@@ -287,40 +279,34 @@ impl Recorder {
         summary: &RunSummary,
     ) -> Result<(), RecordingError> {
         let member = &summary.front[step];
-        let heading = format!(
-            "#{}, design {} of {} on the front",
-            member.id,
-            step + 1,
-            summary.front.len()
-        );
-        let certified = member.certified.as_ref();
-        design::record_step(
-            &self.writer,
-            moment,
-            self.study.model(),
-            &member.evaluation,
-            certified,
-            drivers,
-            &heading,
-        )?;
+        let (evaluation, certified) = (&member.evaluation, member.certified.as_ref());
+        let (number, count) = (step + 1, summary.front.len());
+        let heading = format!("#{}, design {number} of {count} on the front", member.id);
+        let model = self.study.model();
+        design::record_step(&self.writer, moment, model, evaluation, certified, drivers, &heading)?;
         for (name, value) in ALONG_FRONT {
-            let value = Scalars::single(value(&member.evaluation));
-            self.writer.row(&along_front(name), moment, &value)?;
+            self.writer
+                .row(&along_front(name), moment, &Scalars::single(value(evaluation)))?;
         }
-        let point = PlotPoint::of_evaluation(Some(member.id), &member.evaluation);
+        let point = PlotPoint::of_evaluation(Some(member.id), evaluation);
         self.writer.row(paths::SELECTED, moment, &self.frame.selected(&point))
     }
 
     /// Adds the axes, ticks and legend of the scatter plot.
     fn axes(&mut self, moment: Moment<'_>) {
+        let grid = self.frame.grid();
         self.rows.add(paths::PLOT, moment, &self.frame.transform());
-        self.rows.add(paths::AXES, moment, &self.frame.grid().lines());
-        self.rows.add(paths::TICKS, moment, &self.frame.grid().labels());
-        self.rows.add(
-            paths::LEGEND,
-            moment,
-            &self.frame.grid().legend(&self.study.study().architectures),
-        );
+        self.rows.add(paths::AXES, moment, &grid.lines());
+        self.rows.add(paths::TICKS, moment, &grid.labels());
+        let legend = grid.legend(&self.study.study().architectures);
+        self.rows.add(paths::LEGEND, moment, &legend);
+    }
+
+    /// Adds the front to the scatter plot.
+    fn add_front(&mut self, moment: Moment<'_>) {
+        let (designs, line) = (self.frame.front_points(&self.front), self.frame.staircase(&self.front));
+        self.rows.add(paths::FRONT_DESIGNS, moment, &designs);
+        self.rows.add(paths::FRONT_LINE, moment, &line);
     }
 
     /// Adds the axes, legend and front at the first step of the timeline `front`, on which the scatter plot would
@@ -328,10 +314,7 @@ impl Recorder {
     fn scatter_on_front(&mut self) {
         let moment: Moment<'_> = &[(timelines::FRONT, 0)];
         self.axes(moment);
-        self.rows
-            .add(paths::FRONT_DESIGNS, moment, &self.frame.front_points(&self.front));
-        self.rows
-            .add(paths::FRONT_LINE, moment, &self.frame.staircase(&self.front));
+        self.add_front(moment);
     }
 
     /// Writes the designs and rows that were collected.
@@ -365,69 +348,4 @@ impl Recorder {
 /// Returns the entity path of an architecture's feasible designs.
 fn cloud(architecture: Architecture) -> String {
     format!("{}/{architecture}", paths::CLOUD)
-}
-
-fn study_text(study: &Study) -> Result<String, RecordingError> {
-    let text = toml::to_string(study).map_err(RecordingError::encode)?;
-    Ok(format!(
-        "# {}\n\n{}\n\n```toml\n{text}```\n",
-        study.name, study.description
-    ))
-}
-
-/// Returns the verified front as a table, thinned to a readable number of rows.
-fn summary_text(study: &Study, summary: &RunSummary) -> String {
-    const MOST_ROWS: usize = 40;
-    let last = summary.history.last();
-    let mut text = format!(
-        "# Result\n\n{} evaluations, {} feasible. {} designs are on the front after verification on the fine grid \
-         ({} dropped); hypervolume {:.1} {}.\n\n",
-        last.map_or(0, |last| last.evaluations),
-        last.map_or(0, |last| last.feasible),
-        summary.front.len(),
-        summary.dropped,
-        summary.verified_hypervolume,
-        study.hypervolume_unit(),
-    );
-    if let Some(proofs) = &summary.proofs {
-        text.push_str(&format!("{proofs}\n\n"));
-    }
-    // The objectives, and what is of interest in any case.
-    let mut quantities: Vec<Quantity> = study.objectives().iter().map(|objective| objective.quantity).collect();
-    for quantity in [
-        Quantity::Mass,
-        Quantity::WorkspaceRadius,
-        Quantity::of_constraint(Constraint::Clearance),
-    ] {
-        if !quantities.contains(&quantity) {
-            quantities.push(quantity);
-        }
-    }
-    let titles = quantities
-        .iter()
-        .map(|&quantity| format!(" {} |", Column::Quantity(quantity).title()));
-    text.push_str(&format!(
-        "| # | architecture |{} φ_c [°] | R | r | L_b | r_j | r_p | active |\n\
-         |---|---|{}---|---|---|---|---|---|---|\n",
-        titles.collect::<String>(),
-        "---|".repeat(quantities.len()),
-    ));
-    for (_, member) in summary.spread(MOST_ROWS) {
-        let e = &member.evaluation;
-        let [base, platform, link, leg_bar, platform_bar] = e.design.values();
-        let active: Vec<&str> = e.active().map(|constraint| constraint.id()).collect();
-        let value = |quantity: &Quantity| e.quantities.get(*quantity).map(number).unwrap_or_default();
-        text.push_str(&format!(
-            "| {} | {} |{} {} | {base:.3} | {platform:.3} | {link:.3} | {leg_bar:.4} | {platform_bar:.4} | {} |\n",
-            member.id,
-            e.design.architecture(),
-            quantities
-                .iter()
-                .map(|quantity| format!(" {} |", value(quantity)))
-                .collect::<String>(),
-            e.home_phi_deg.map(|phi| phi.to_string()).unwrap_or_default(),
-            active.join(" "),
-        ));
-    }
-    text
 }
