@@ -290,7 +290,12 @@ impl<'a> Examiner<'a> {
 
     /// Proves or contracts one box. `bad` is the bad pose that is known.
     pub fn examine(&self, mut part: PoseBox, bad: Option<BadPose>) -> Examination {
-        let mut shown = Examination::new(bad);
+        let mut shown = Examination {
+            bad,
+            boxes: 0,
+            told: Vec::new(),
+            left: None,
+        };
         for _ in 0..=CONTRACTIONS {
             if part.lower[0] >= self.target(shown.bad) {
                 return self.told(shown, &part, BoxOutcome::Beyond, None);
@@ -370,17 +375,6 @@ impl<'a> Examiner<'a> {
             shown.told.push(examined_box(part, outcome, scalar, shown.bad));
         }
         shown
-    }
-}
-
-impl Examination {
-    fn new(bad: Option<BadPose>) -> Self {
-        Self {
-            bad,
-            boxes: 0,
-            told: Vec::new(),
-            left: None,
-        }
     }
 }
 
