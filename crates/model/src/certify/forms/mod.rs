@@ -8,6 +8,7 @@ mod bars;
 mod clearance;
 mod compliances;
 mod motion;
+mod out_of_plane;
 mod plain;
 mod rails;
 mod reach;
