@@ -21,7 +21,7 @@ use compliances::Compliances;
 use motion::MotionForms;
 use plain::checker_of_slow_limits;
 use reach::ReachForms;
-use strength::{LoadForms, StrengthForms};
+use strength::StrengthForms;
 pub(super) use travel::{Travel, TravelForms};
 
 use super::CertifyError;
@@ -166,8 +166,6 @@ pub(super) struct Forms<'a> {
     reach: Option<ReachForms>,
     /// What the limits of the strength need, if there are any.
     strength: Option<StrengthForms>,
-    /// What the enclosed numbers of loads and motions begin with.
-    loads: LoadForms,
     /// What the limits of a motion need, if there are any.
     motion: Option<MotionForms>,
     /// The design in plain numbers, if there are limits that take long.
@@ -187,7 +185,6 @@ impl<'a> Forms<'a> {
             to_length: Interval::exactly(design.platform_radius()) / characteristic_length(model, design, &frames),
             separations: Separations::new(model, design),
             reach: ReachForms::new(model, design),
-            loads: LoadForms::new(design),
             slow: checker_of_slow_limits(model, design),
             strength,
             motion,
@@ -341,6 +338,15 @@ fn others(i: usize) -> [usize; 2] {
 fn turn(legs: &[LegEnclosure; LEGS], i: usize) -> TaylorModel {
     let [j, k] = others(i);
     cross(legs[j].u, legs[k].u)
+}
+
+fn sum_of_legs(term: impl Fn(usize) -> TaylorModel) -> TaylorModel {
+    term(0) + term(1) + term(2)
+}
+
+/// Encloses `det A` as a multiple of `r`.
+fn determinant(legs: &[LegEnclosure; LEGS]) -> TaylorModel {
+    sum_of_legs(|i| legs[i].moment * turn(legs, i))
 }
 
 /// Encloses the characteristic length \[m\].

@@ -2,7 +2,7 @@
 //! section 13.3).
 
 use super::rails::{RailCompliances, RailForms};
-use super::{Enclosures, Forms, others, turn};
+use super::{Enclosures, Forms, determinant, others, sum_of_legs, turn};
 use crate::enclosure::{Interval, PlanarModel, TaylorModel, dot};
 use crate::evaluation::PoseScalar;
 use crate::mechanism::LegEnclosure;
@@ -91,7 +91,7 @@ impl Forms<'_> {
         (scalar, threshold): (PoseScalar, Interval),
         found: &mut Enclosures,
     ) {
-        let square = sum_of_legs(|i| legs[i].moment * turn(legs, i)).squared();
+        let square = determinant(legs).squared();
         let trace = sum_of_legs(|i| {
             let [a, b] = others(i).map(|leg| legs[leg]);
             let mixed = (a.moment * b.moment * dot(a.u, b.u)).times(2.0);
@@ -114,7 +114,7 @@ impl Forms<'_> {
             self.enclose_compliant_xy(legs, along, (PoseScalar::StiffnessXy, self.compliance.in_plane), found);
         }
         if self.is_required(PoseScalar::StiffnessPhiZ, found) {
-            let square = sum_of_legs(|i| legs[i].moment * turn(legs, i)).squared();
+            let square = determinant(legs).squared();
             let turns = sum_of_legs(|i| along.one[i] * turn(legs, i).squared());
             found.push(
                 PoseScalar::StiffnessPhiZ,
@@ -213,12 +213,4 @@ fn exceeds_deviator(excess: &TaylorModel, part: impl Fn(usize) -> (TaylorModel, 
     });
     let margin = Interval::exactly(least).square() - (squares[0] + squares[1]);
     deviator.iter().all(|part| !part.range()[0].is_nan()) && margin.lower() > 0.0
-}
-
-fn sum_of_legs(term: impl Fn(usize) -> TaylorModel) -> TaylorModel {
-    let mut sum = term(0);
-    for i in 1..LEGS {
-        sum = sum + term(i);
-    }
-    sum
 }
