@@ -107,6 +107,16 @@ impl Interval {
             ..product
         }
     }
+
+    /// Returns the larger of two numbers.
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self::new(self.lower.max(other.lower), self.upper.max(other.upper))
+    }
+
+    /// Returns the smaller of two numbers.
+    pub(crate) fn min(self, other: Self) -> Self {
+        Self::new(self.lower.min(other.lower), self.upper.min(other.upper))
+    }
 }
 
 /// Sums `Σ (−1)^k s^k / (2k + first)!`, which is the cosine of `√s` for `first` = 0, and its sine over `√s` for 1, for `s` up to 0.7.

@@ -93,7 +93,7 @@ impl Separations {
                 .collect(),
             settings: model.settings().legs,
             to_unit,
-            slider: Interval::new(half_axis.lower().max(0.0), half_axis.upper().max(0.0)) * to_unit,
+            slider: half_axis.max(exactly(0.0)) * to_unit,
             from_rail_end: half_length + clearance,
             pairs: pairs(&members, clearance),
             barriers: barriers(model, &members, clearance),
@@ -114,26 +114,28 @@ impl Separations {
             rails: [None; LEGS],
         };
         let position = pose.position.map(|part| part.scaled(self.to_unit));
+        let anchor = |frame: &LegFrameEnclosure| {
+            let at_base = frame.anchor.map(|part| TaylorModel::constant(part * frame.to_unit));
+            difference(at_base, position)
+        };
         let mut elbows = [None; LEGS];
         for (index, leg) in legs.iter().enumerate() {
             let frame = &frames[index];
             let arm = leg.arm;
             let length = frame.arm_length * frame.to_unit;
             let tip = arm.map(|part| part.scaled(length));
-            let at_base = frame.anchor.map(|part| TaylorModel::constant(part * frame.to_unit));
-            let anchor = difference(at_base, position);
             let is_slider = design.architecture().chain().proximal == Some(MemberKind::Slider);
             let MembersEnclosure { proximal, distal, rail } =
-                AnyLeg::enclose_members(frame, design, &self.settings, leg, anchor, tip);
+                AnyLeg::enclose_members(frame, design, &self.settings, leg, anchor(frame), tip);
             // A slider is a point before it is extended, and a crank or turning guide leads from the base to the joint.
             elbows[index] = proximal.map(|axis| axis.points[if is_slider { 0 } else { 1 }]);
-            boxes.axes[LEGS * PROXIMAL + index] = proximal.map(|axis| match design.architecture().chain().proximal {
-                Some(_) if is_slider => {
-                    let half = axis.direction.map(|part| part.scaled(self.slider));
-                    let [centre, ..] = axis.points;
-                    AxisEnclosure::between(difference(centre, half), sum(centre, half), axis.direction)
+            boxes.axes[LEGS * PROXIMAL + index] = proximal.map(|axis| {
+                if !is_slider {
+                    return axis;
                 }
-                _ => axis,
+                let half = axis.direction.map(|part| part.scaled(self.slider));
+                let [centre, ..] = axis.points;
+                AxisEnclosure::between(difference(centre, half), sum(centre, half), axis.direction)
             });
             boxes.axes[LEGS * DISTAL + index] = Some(distal);
             let middle = [TaylorModel::exactly(0.0); 2];
@@ -141,12 +143,8 @@ impl Separations {
             boxes.rails[index] = rail;
         }
         for &(leg, point) in &self.joints {
-            let frame = &frames[leg];
             let at = match point {
-                JointPoint::A => {
-                    let at_base = frame.anchor.map(|part| TaylorModel::constant(part * frame.to_unit));
-                    Some(difference(at_base, position))
-                }
+                JointPoint::A => Some(anchor(&frames[leg])),
                 JointPoint::B => elbows[leg],
                 JointPoint::C => boxes.axes[LEGS * PLATFORM + leg].map(|bar| bar.points[1]),
             };
