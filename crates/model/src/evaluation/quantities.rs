@@ -1,7 +1,6 @@
 //! The values of the quantities of a design (docs/model.md, section 6.5).
 
-use glam::DVec2;
-
+use super::worst::padded;
 use super::{
     Constraint, ConstraintResult, Evaluation, LimitResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive,
     TaskOutcome, largest_of_legs,
@@ -138,23 +137,22 @@ pub(super) fn add_to_limits<L: Leg>(
         _ => None,
     };
     let set: ScalarSet = evaluation.limits.iter().filter_map(scalar_of).collect();
-    let mut positions = Positions::default();
-    let orientations: Vec<usize> = match found.home {
+    let (positions, orientations): (Positions, Vec<usize>) = match found.home {
         Some(home) if !found.samples.is_empty() => {
-            positions.extend(&found.samples);
-            found.orientation_grid.window(home).collect()
+            let window = found.orientation_grid.window(home);
+            (padded(found.samples.iter().copied()), window.collect())
         }
         _ => {
-            positions.push(model.settings().workspace.centre);
             let pose = evaluation.constraint(Constraint::Reach).pose;
             let is_reported = |index: &usize| {
                 let phi = found.orientations[*index].phi_deg.to_radians();
                 pose.is_some_and(|pose| (phi - pose.phi).abs() < 1e-9)
             };
-            (0..found.orientations.len()).find(is_reported).into_iter().collect()
+            let reported = (0..found.orientations.len()).find(is_reported);
+            let centre = model.settings().workspace.centre;
+            (padded([centre]), reported.into_iter().collect())
         }
     };
-    positions.pad();
     let least = least_over(checker, found, set, orientations.into_iter(), &positions, &OneWorker);
     for limit in &mut evaluation.limits {
         if let Some(scalar) = scalar_of(limit)
@@ -254,19 +252,15 @@ fn dexterity_mean<L: Leg>(
 ) -> f64 {
     let spec = &model.settings().workspace;
     let spacing = checker.base_radius / grid.ray_steps() as f64;
-    let rings = (found.radius / spacing).ceil().clamp(1.0, MEAN_RINGS) as usize;
     let rings = if found.samples.is_empty() {
-        rings
+        (found.radius / spacing).ceil().clamp(1.0, MEAN_RINGS) as usize
     } else {
         MEAN_RINGS as usize
     };
     let weighted = spec
         .region
         .quadrature(spec.centre, found.radius, rings, &found.directions);
-    let places: Vec<DVec2> = weighted.iter().map(|(place, _)| *place).collect();
-    let mut positions = Positions::default();
-    positions.extend(&places);
-    positions.pad();
+    let positions = padded(weighted.iter().map(|(place, _)| *place));
     let mut columns = ValueColumns::default();
     let window: Vec<usize> = found.orientation_grid.window(home).collect();
     let (mut sum, mut total) = (0.0, 0.0);
