@@ -27,14 +27,9 @@ impl<V: Real, C: Coordinates<V>> LaneJob for LegInPlane<'_, V, C> {
 
     #[inline(always)]
     fn run(self) -> [V; 6] {
-        let Self {
-            model,
-            leg,
-            compliance,
-            coordinates,
-        } = self;
-        let mut mass = [compliance.splat(0.0); 6];
-        model.add_leg_in_plane(&mut mass, leg, compliance, coordinates, |_, _| {});
+        let mut mass = [self.compliance.splat(0.0); 6];
+        self.model
+            .add_leg_in_plane(&mut mass, self.leg, self.compliance, self.coordinates, |_, _| {});
         mass
     }
 }
@@ -52,14 +47,9 @@ impl<V: Real, C: Coordinates<V>> LaneJob for LegOutOfPlane<'_, V, C> {
 
     #[inline(always)]
     fn run(self) -> [V; 6] {
-        let Self {
-            model,
-            leg,
-            forces,
-            coordinates,
-        } = self;
-        let mut mass = [leg.transmission.splat(0.0); 6];
-        model.add_leg_out_of_plane(&mut mass, leg, &forces, coordinates, |_, _| {});
+        let mut mass = [self.leg.transmission.splat(0.0); 6];
+        self.model
+            .add_leg_out_of_plane(&mut mass, self.leg, &self.forces, self.coordinates, |_, _| {});
         mass
     }
 }
@@ -76,16 +66,13 @@ impl DynamicsModel {
         let like = legs[0].transmission;
         let mut mass = [like.splat(0.0); 6];
         for (index, leg) in legs.iter().enumerate() {
-            let compliance = inputs.legs.along[index];
-            add(
-                &mut mass,
-                &like.call_apart(LegInPlane {
-                    model: self,
-                    leg,
-                    compliance,
-                    coordinates,
-                }),
-            );
+            let of_leg = like.call_apart(LegInPlane {
+                model: self,
+                leg,
+                compliance: inputs.legs.along[index],
+                coordinates,
+            });
+            add(&mut mass, &of_leg);
         }
         let payload = &self.settings.payload;
         let centre = self.payload_centre(inputs);
@@ -245,16 +232,13 @@ impl DynamicsModel {
         let like = legs[0].transmission;
         let mut mass = [like.splat(0.0); 6];
         for (index, leg) in legs.iter().enumerate() {
-            let forces = coordinates.forces(&inputs.legs.stiffness[index]);
-            add(
-                &mut mass,
-                &like.call_apart(LegOutOfPlane {
-                    model: self,
-                    leg,
-                    forces,
-                    coordinates,
-                }),
-            );
+            let of_leg = like.call_apart(LegOutOfPlane {
+                model: self,
+                leg,
+                forces: coordinates.forces(&inputs.legs.stiffness[index]),
+                coordinates,
+            });
+            add(&mut mass, &of_leg);
         }
         let payload = &self.settings.payload;
         let platform = coordinates.platform(like);
