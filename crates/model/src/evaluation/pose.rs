@@ -89,7 +89,7 @@ impl Model {
     pub fn posed(&self, design: &Design) -> PosedDesign {
         PosedDesign {
             design: *design,
-            checker: self.complete_checker(design),
+            checker: self.checker_of(design, ScalarSet::all()),
         }
     }
 }

@@ -38,7 +38,7 @@ impl<L: Leg> Sizer<'_, L> {
         let window: Vec<usize> = self.orientation_grid.window(home).collect();
         self.lay_disc(radius, &window);
         let bars = self.lightest_bars(SizingAccuracy::COARSE)?;
-        Some(self.with_bars(bars))
+        Some(self.design.with_bars(bars))
     }
 
     /// Lays out the ring of a radius in the given orientations, and returns the number of poses in each orientation.
