@@ -135,6 +135,18 @@ impl TaylorModel {
         self.constant.abs() + self.linear_size() + self.quadratic_size()
     }
 
+    /// Returns the polynomial of which each coefficient is a function of one of this, with a remainder.
+    #[inline(always)]
+    fn mapped(&self, of: impl Fn(f64) -> f64, remainder: f64) -> Self {
+        Self {
+            constant: of(self.constant),
+            linear: self.linear.map(&of),
+            square: self.square.map(&of),
+            mixed: self.mixed.map(&of),
+            remainder,
+        }
+    }
+
     /// Returns the square; its products are those of a multiplication.
     #[inline]
     pub fn squared(&self) -> Self {
@@ -145,26 +157,14 @@ impl TaylorModel {
     #[inline]
     pub fn times(&self, factor: f64) -> Self {
         let size = self.size() * factor.abs();
-        Self {
-            constant: self.constant * factor,
-            linear: self.linear.map(|a| a * factor),
-            square: self.square.map(|b| b * factor),
-            mixed: self.mixed.map(|b| b * factor),
-            remainder: remainder(self.remainder * factor.abs(), size),
-        }
+        self.mapped(|part| part * factor, remainder(self.remainder * factor.abs(), size))
     }
 
     /// Multiplies by `factor ± radius`, where `size` is that of `self`.
     #[inline]
     fn multiple(&self, factor: f64, radius: f64, size: f64) -> Self {
         let carried = self.remainder * (factor.abs() + radius) + radius * size;
-        Self {
-            constant: self.constant * factor,
-            linear: self.linear.map(|a| a * factor),
-            square: self.square.map(|b| b * factor),
-            mixed: self.mixed.map(|b| b * factor),
-            remainder: remainder(carried, size * factor.abs()),
-        }
+        self.mapped(|part| part * factor, remainder(carried, size * factor.abs()))
     }
 
     /// Multiplies by a constant.
@@ -221,7 +221,7 @@ impl TaylorModel {
     }
 
     /// Returns a bound of the absolute value.
-    fn largest(&self) -> f64 {
+    pub(super) fn largest(&self) -> f64 {
         let [lower, upper] = self.range();
         if lower.is_nan() || upper.is_nan() {
             return f64::NAN;
@@ -414,13 +414,7 @@ impl Neg for TaylorModel {
 
     #[inline]
     fn neg(self) -> Self {
-        Self {
-            constant: -self.constant,
-            linear: self.linear.map(|a| -a),
-            square: self.square.map(|b| -b),
-            mixed: self.mixed.map(|b| -b),
-            remainder: self.remainder,
-        }
+        self.mapped(|part| -part, self.remainder)
     }
 }
 
