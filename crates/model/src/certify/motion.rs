@@ -229,9 +229,9 @@ impl Proof<'_> {
     fn run(&mut self) -> MotionVerdict {
         let mut open = Vec::new();
         let motion = self.motion;
-        let (mut stretches, mut begin) = (motion.stretches(), 0.0);
+        let mut stretches = motion.stretches();
         stretches.reverse();
-        for (piece, duration) in motion.durations().iter().enumerate() {
+        for (piece, (duration, begin)) in motion.durations().iter().zip(motion.begins()).enumerate() {
             let mut waiting = stretches.clone();
             while let Some([from, to]) = waiting.pop() {
                 let Err((claim, is_wrong)) = self.examine(piece, [from, to]) else {
@@ -256,7 +256,6 @@ impl Proof<'_> {
                     return MotionVerdict::Open(open[0]);
                 }
             }
-            begin += duration + motion.dwell();
         }
         match open.first() {
             Some(moment) => MotionVerdict::Open(*moment),
