@@ -12,7 +12,8 @@ use super::legs::{DynamicsInputs, MovingLeg};
 use crate::lanes::{LaneJob, Planar, Real, dot, scaled, sum};
 use crate::spatial::LEGS;
 use crate::stiffness::add_bar;
-use crate::strength::path::{BARS, BarLanes, DISTAL, End, PLATFORM, PathJoint};
+use crate::strength::bars::BarLanes;
+use crate::strength::path::{BARS, DISTAL, End, PLATFORM, PathJoint};
 
 /// What a leg contributes to the mass in the plane, as a function of its own.
 struct LegInPlane<'a, V, C> {

@@ -4,6 +4,7 @@
 //! share the load by their compliances. All values are the worst of a set of wrenches together with the weight of the members. They are
 //! written over [`Real`], so that a report of one pose and an evaluation of many use the same formulas.
 
+pub(crate) mod bars;
 mod buckling;
 mod inputs;
 mod joints;

@@ -1,6 +1,7 @@
 //! Forces and moments in the legs at several poses at once (docs/model.md, sections 14.1, 14.4 and 14.6).
 
-use super::path::{BARS, Beyond, PathLanes};
+use super::bars::Beyond;
+use super::path::{BARS, PathLanes};
 use super::{LegStiffness, Loads, StrengthInputs, StrengthModel};
 use crate::lanes::{Planar, Real, dot, less, scaled, sum};
 use crate::spatial::LEGS;

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::Plane;
 use crate::dynamics::bar_shape::GAUSS;
 use crate::lanes::Planar;
-use crate::strength::path::{BarLanes, Span};
+use crate::strength::bars::{BarLanes, Span};
 
 /// A displacement as a linear function of the coordinates of a leg: the coordinates that it depends on, with their factors.
 #[derive(Clone, Default)]

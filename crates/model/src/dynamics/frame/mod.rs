@@ -17,7 +17,8 @@ use super::legs::{DynamicsInputs, MovingLeg};
 use super::modes::distance_of_joint;
 use crate::lanes::Planar;
 use crate::spatial::LEGS;
-use crate::strength::path::{BARS, BarLanes, DISTAL, PLATFORM};
+use crate::strength::bars::BarLanes;
+use crate::strength::path::{BARS, DISTAL, PLATFORM};
 
 /// Number of elements into which each bar, and each end of a guide beyond its carriage, is divided.
 const ELEMENTS: usize = 3;
