@@ -6,7 +6,7 @@
 use super::DynamicsModel;
 use super::bar_shape::{BarEnds, BarShape};
 use super::displacement::{
-    Coordinates, Displacement, add, add_square, add_twist, combined, in_direction, lift, rotation, slope, times,
+    Coordinates, Displacement, Row, add, add_square, add_twist, combined, in_direction, lift, rotation, slope, times,
 };
 use super::legs::{DynamicsInputs, MovingLeg};
 use crate::lanes::{LaneJob, Planar, Real, dot, scaled, sum};
@@ -106,6 +106,28 @@ impl DynamicsModel {
         [moved.x, moved.y, turn]
     }
 
+    /// Returns what the joints of a leg under a force along its line have to add to what the bars give for a unit force.
+    #[inline(always)]
+    fn rates<V: Real, C: Coordinates<V>>(
+        &self,
+        leg: &MovingLeg<V>,
+        coordinates: C,
+        gives: &[[V; 3]; BARS],
+        force: &Row<V>,
+    ) -> [Row<V>; 3] {
+        let (zero, one) = (force[0].splat(0.0), force[0].splat(1.0));
+        let mut given = [zero; 3];
+        for bar in self.paths[0].first..BARS {
+            given = sum(&given, &gives[bar]);
+        }
+        let mut rates = [[zero; 3]; 3];
+        for joint in 0..3 {
+            let taken = dot(&leg.rates[joint], &given);
+            rates[joint] = combined(&coordinates.of(&leg.rates[joint]), one, force, -taken);
+        }
+        rates
+    }
+
     /// Adds what a leg contributes to the mass in the plane, and shows how each of its bars moves.
     #[inline(always)]
     pub(super) fn add_leg_in_plane<V: Real, C: Coordinates<V>>(
@@ -122,18 +144,11 @@ impl DynamicsModel {
         let of = &self.paths[0];
         let first = of.first;
         let mut gives = [[zero; 3]; BARS];
-        let mut given = [zero; 3];
         for bar in first..BARS {
             gives[bar] = self.give(leg, bar);
-            given = sum(&given, &gives[bar]);
         }
-        // What the joints have to add to what the bars give.
         let platform = coordinates.platform(like);
-        let mut rates = [[zero; 3]; 3];
-        for joint in 0..3 {
-            let taken = dot(&leg.rates[joint], &given);
-            rates[joint] = combined(&coordinates.of(&leg.rates[joint]), like.splat(1.0), &force, -taken);
-        }
+        let rates = self.rates(leg, coordinates, &gives, &force);
         add_square(
             mass,
             &rates[self.driven],
