@@ -6,7 +6,7 @@
 use super::forms::{Travel, TravelForms};
 use crate::dynamics::TaskMotion;
 use crate::enclosure::TaylorModel;
-use crate::evaluation::{Bound, Model, Quantity, TaskFigures, TaskOutcome, largest_of_legs};
+use crate::evaluation::{Model, Quantity, TaskFigures, TaskOutcome, largest_of_legs};
 use crate::mechanism::{Design, JointKind};
 
 /// Share by which a bound may exceed the figure that it encloses.
@@ -288,24 +288,14 @@ impl Model {
 
     /// Returns the figures of a motion that are to be bounded, with their limits.
     fn claims(&self, design: &Design, outcome: &TaskOutcome, figures: &TaskFigures) -> [Figure; 3] {
-        let limits = |quantity: Quantity| {
-            let of_quantity = self
-                .settings()
-                .limits
-                .iter()
-                .filter(move |limit| limit.quantity == quantity);
-            of_quantity.map(|limit| (limit.quantity, limit.bound))
+        let bounds = |quantity: Quantity| {
+            let limits = self.settings().limits.iter();
+            limits
+                .filter(move |limit| limit.quantity == quantity)
+                .map(|limit| limit.bound)
         };
-        let at_most = |quantity: Quantity| {
-            limits(quantity).filter_map(|(quantity, bound)| match bound {
-                Bound::AtMost(most) => Some((quantity, most)),
-                Bound::AtLeast(_) => None,
-            })
-        };
-        let reach = limits(Quantity::PathReach).filter_map(|(quantity, bound)| match bound {
-            Bound::AtLeast(least) => Some((quantity, -least)),
-            Bound::AtMost(_) => None,
-        });
+        let at_most = |quantity: Quantity| bounds(quantity).filter_map(move |bound| Some((quantity, bound.most()?)));
+        let reach = bounds(Quantity::PathReach).filter_map(|bound| Some((Quantity::PathReach, -bound.least()?)));
         let [speed, force] = match design.architecture().actuator() {
             JointKind::Prismatic => [Quantity::PathSpeed, Quantity::PathForce],
             JointKind::Revolute => [Quantity::PathRate, Quantity::PathTorque],

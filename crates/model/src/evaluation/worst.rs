@@ -160,8 +160,27 @@ impl<L: Leg> ConstraintSearch<'_, L> {
         padded(positions_in_disc(centre, &found.directions, found.radius, spacing))
     }
 
+    /// Returns the reports of the constraints, the violation, and the home orientation of a design that has a workspace; `worst` is the worst
+    /// margin over a region, if the study prescribes one.
+    pub fn report(&self, worst: Option<f64>, grid: &Grid) -> (ConstraintResults, f64, Option<usize>) {
+        let assembly = &self.checker.assembly;
+        match (self.found.home, worst) {
+            (Some(home), None) if assembly.value >= assembly.threshold => {
+                (self.over_workspace(home, grid), 0.0, Some(home))
+            }
+            (Some(home), Some(worst)) => {
+                let (constraints, violation) = self.over_region(home, worst);
+                (constraints, violation, Some(home).filter(|_| violation == 0.0))
+            }
+            _ => {
+                let (constraints, violation) = self.at_best_centre();
+                (constraints, violation, None)
+            }
+        }
+    }
+
     /// Returns the smallest values over the regular workspace. The constraints that fail just beyond it are active.
-    pub fn over_workspace(&self, home: usize, grid: &Grid) -> ConstraintResults {
+    fn over_workspace(&self, home: usize, grid: &Grid) -> ConstraintResults {
         let mut reports = self.smallest_over(home, &self.positions(grid));
         self.mark_beyond(&mut reports, self.found.home_sign);
         reports
@@ -169,7 +188,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
 
     /// Returns the smallest values over a prescribed region whose worst margin is `worst`, and the violation. The constraints
     /// with the worst margin are active.
-    pub fn over_region(&self, home: usize, worst: f64) -> (ConstraintResults, f64) {
+    fn over_region(&self, home: usize, worst: f64) -> (ConstraintResults, f64) {
         let mut reports = self.smallest_over(home, &padded(self.found.samples.iter().copied()));
         let near = worst + ACTIVE;
         for report in &mut reports {
@@ -253,7 +272,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     /// The best orientation is the one with the smallest shortfall at the centre, the best window the one with the
     /// smallest mean shortfall. The constraints that fail at a centre pose of the best window are active; if there are
     /// none, those that fail just beyond the limits that the search recorded.
-    pub fn at_best_centre(&self) -> (ConstraintResults, f64) {
+    fn at_best_centre(&self) -> (ConstraintResults, f64) {
         let found = self.found;
         let centre = self.model.settings().workspace.centre;
         let shortfalls: Vec<(f64, f64)> = (0..found.orientations.len())
