@@ -75,31 +75,28 @@ impl Forms<'_> {
     /// Encloses by how much the demands of the strength are below their limits.
     pub(super) fn enclose_strength(&self, legs: &[LegEnclosure; LEGS], (detail, found): (Detail, &mut Enclosures)) {
         let Some(strength) = &self.strength else { return };
-        let open = || strength.limits.iter().filter(|limit| found.needs(limit.scalar));
-        let set = open()
-            .map(|limit| limit.value)
-            .fold(StrengthSet::default(), StrengthSet::with);
+        let limits = strength.limits.iter();
+        let open: Vec<&StrengthLimit> = limits.filter(|limit| found.needs(limit.scalar)).collect();
+        let values = open.iter().map(|limit| limit.value);
+        let set = values.fold(StrengthSet::default(), StrengthSet::with);
         if set.is_empty() {
             return;
         }
-        let stress = open().filter(|limit| matches!(limit.value, StrengthValue::Stress | StrengthValue::SafetyFactor));
+        let is_stress =
+            |limit: &&&StrengthLimit| matches!(limit.value, StrengthValue::Stress | StrengthValue::SafetyFactor);
+        let stress = open.iter().filter(is_stress);
         let kept = stress
             .filter_map(|limit| limit.demand)
             .map(|most| most.lower())
             .reduce(f64::min)
             .filter(|_| detail == Detail::Limits);
         let demands = strength.model.enclose(&self.load_inputs(legs), set, kept);
-        let forms: Vec<(PoseScalar, TaylorModel)> = open()
-            .map(|limit| {
-                let form = match limit.demand {
-                    Some(most) => TaylorModel::constant(most) - demands[limit.value as usize],
-                    None => TaylorModel::exactly(-1.0),
-                };
-                (limit.scalar, form)
-            })
-            .collect();
-        for (scalar, form) in forms {
-            found.push(scalar, form);
+        for limit in open {
+            let form = match limit.demand {
+                Some(most) => TaylorModel::constant(most) - demands[limit.value as usize],
+                None => TaylorModel::exactly(-1.0),
+            };
+            found.push(limit.scalar, form);
         }
     }
 
