@@ -37,11 +37,10 @@ impl SizedPoses {
     /// For bars that are known nearly, to an accuracy.
     pub fn exactly(accuracy: SizingAccuracy) -> Self {
         Self {
-            must_hold: true,
             near: 1.1,
             accuracy,
-            keeps_bars: false,
             repeats: 10,
+            ..Self::COARSELY
         }
     }
 
@@ -81,7 +80,8 @@ impl<L: Leg> Sizer<'_, L> {
         let all: Vec<usize> = (0..self.arms.len()).collect();
         let signs = self.feasible_signs(&samples.all[..samples.first], &all);
         let candidates = self.windows(&signs);
-        let homes = self.stiffest_homes(&signs, &samples, &candidates);
+        self.lay_positions(&samples.all[..samples.first], &candidates);
+        let homes = self.stiffest_first(self.homes(&signs), samples.first, &candidates);
         homes
             .into_iter()
             .take(HOMES)
@@ -181,18 +181,6 @@ impl<L: Leg> Sizer<'_, L> {
     fn feasible_signs(&mut self, positions: &[DVec2], orientations: &[usize]) -> Vec<Option<f64>> {
         self.lay_positions(positions, orientations);
         self.signs_of_laid(positions.len(), orientations)
-    }
-
-    /// Returns the home orientations whose window has one sign, the one that is stiffest on the boundary first.
-    fn stiffest_homes(
-        &mut self,
-        signs: &[Option<f64>],
-        samples: &RegionPositions,
-        orientations: &[usize],
-    ) -> Vec<usize> {
-        let homes = self.homes(signs);
-        self.lay_positions(&samples.all[..samples.first], orientations);
-        self.stiffest_first(homes, samples.first, orientations)
     }
 }
 

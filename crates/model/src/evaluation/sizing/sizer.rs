@@ -157,9 +157,14 @@ impl<'a, L: Leg> Sizer<'a, L> {
     pub fn lay_positions(&mut self, positions: &[DVec2], orientations: &[usize]) {
         let centre = self.model.settings().workspace.centre;
         let positions: Vec<DVec2> = positions.iter().map(|position| *position + centre).collect();
+        self.lay(&positions, orientations);
+    }
+
+    /// Lays out positions in the base frame in the given orientations.
+    pub fn lay(&mut self, positions: &[DVec2], orientations: &[usize]) {
         self.laid.clear();
         for &orientation in orientations {
-            self.laid.extend(&positions, &self.arms[orientation]);
+            self.laid.extend(positions, &self.arms[orientation]);
         }
         self.laid.pad();
     }
