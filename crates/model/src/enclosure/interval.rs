@@ -241,15 +241,7 @@ mod tests {
         assert!(one.lower < 1.0 && one.upper > 1.0);
         let root = Interval::sqrt_3();
         assert!(root.lower * root.lower < 3.0 && root.upper * root.upper > 3.0);
-        assert!(
-            (Interval::exactly(1.0)
-                / Interval {
-                    lower: -1.0,
-                    upper: 1.0
-                })
-            .lower
-            .is_nan()
-        );
+        assert!((Interval::exactly(1.0) / Interval::new(-1.0, 1.0)).lower.is_nan());
         // sin(π) = 0.
         let (sine, cosine) = Interval::PI.sine_and_cosine();
         assert!(sine.lower <= 0.0 && sine.upper >= 0.0 && cosine.lower <= -1.0 && cosine.upper >= -1.0);

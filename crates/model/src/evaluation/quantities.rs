@@ -83,9 +83,9 @@ pub(super) fn add_of_region<L: Leg>(
         checker.slow_limits()
     };
     let left: ScalarSet = set.iter().filter(|scalar| !searched.contains(*scalar)).collect();
-    let window = || found.orientation_grid.window(home);
-    let mut least = least_over(checker, found, left, window(), positions, workers);
-    for index in window() {
+    let window: Vec<usize> = found.orientation_grid.window(home).collect();
+    let mut least = least_over(checker, found, left, &window, positions, workers);
+    for index in window {
         for scalar in set.iter().filter(|scalar| searched.contains(*scalar)) {
             let least = &mut least[scalar as usize];
             *least = least.min(found.slow[index][scalar]);
@@ -102,7 +102,7 @@ fn least_over<L: Leg>(
     checker: &PoseChecker<L>,
     found: &RegularWorkspace,
     set: ScalarSet,
-    orientations: impl Iterator<Item = usize>,
+    orientations: &[usize],
     positions: &Positions,
     workers: &dyn Workers,
 ) -> [f64; PoseScalar::COUNT] {
@@ -111,12 +111,11 @@ fn least_over<L: Leg>(
         return least;
     }
     let indices = positions.indices();
-    let orientations: Vec<usize> = orientations.collect();
     let of_orientation = |index: &usize| {
         let arms = &found.orientations[*index].arms;
         checker.worst(set, arms, &positions.xs, &positions.ys, &indices)
     };
-    for minima in map(workers, &orientations, of_orientation) {
+    for minima in map(workers, orientations, of_orientation) {
         for (least, minimum) in least.iter_mut().zip(minima) {
             *least = least.min(minimum.value);
         }
@@ -153,7 +152,7 @@ pub(super) fn add_to_limits<L: Leg>(
             (padded([centre]), reported.into_iter().collect())
         }
     };
-    let least = least_over(checker, found, set, orientations.into_iter(), &positions, &OneWorker);
+    let least = least_over(checker, found, set, &orientations, &positions, &OneWorker);
     for limit in &mut evaluation.limits {
         if let Some(scalar) = scalar_of(limit)
             && least[scalar as usize].is_finite()
