@@ -73,17 +73,7 @@ fn evaluate<L: Leg>(
     let phi_deg = |home: usize| found.orientations[home].phi_deg;
     let mut drive = None;
     if let Some(home) = home {
-        let positions = reporter.positions(grid);
-        let asked = (model, design);
-        quantities::add_of_region(
-            &mut quantities,
-            asked,
-            checker,
-            &found,
-            home,
-            &positions,
-            (grid, workers),
-        );
+        quantities::add_of_region(&mut quantities, &reporter, home, grid);
         let frame = model.task_frame(design, workspace_radius, phi_deg(home));
         drive = quantities::add_of_task(&mut quantities, model, design, &frame);
     }

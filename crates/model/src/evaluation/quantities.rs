@@ -1,6 +1,6 @@
 //! The values of the quantities of a design (docs/model.md, section 6.5).
 
-use super::worst::padded;
+use super::worst::{ConstraintSearch, padded};
 use super::{
     Constraint, ConstraintResult, Evaluation, LimitResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive,
     TaskOutcome, largest_of_legs,
@@ -54,13 +54,18 @@ impl Model {
 /// Adds those quantities over the region of a design that the study asks for.
 pub(super) fn add_of_region<L: Leg>(
     values: &mut QuantityValues,
-    (model, design): (&Model, &Design),
-    checker: &PoseChecker<L>,
-    found: &RegularWorkspace,
+    search: &ConstraintSearch<'_, L>,
     home: usize,
-    positions: &Positions,
-    (grid, workers): (&Grid, &dyn Workers),
+    grid: &Grid,
 ) {
+    let &ConstraintSearch {
+        model,
+        checker,
+        design,
+        found,
+        workers,
+    } = search;
+    let positions = &search.positions(grid);
     let asked = |quantity: Quantity| model.settings().quantities.contains(quantity);
     if asked(Quantity::FrameFrequency) {
         let pose = pose_of_lowest_frequency(checker, found, home, positions);

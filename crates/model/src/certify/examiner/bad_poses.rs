@@ -25,14 +25,9 @@ impl Examiner<'_> {
         self.forms.enclose_pose(&pose, proved).violated().next()
     }
 
-    /// Takes the pose at a point if it is bad and nearer than the one that is known; returns a constraint that it violates, of those that are
-    /// not proved there.
-    fn try_point(&self, bad: &mut Option<BadPose>, point: [f64; VARIABLES], proved: ProvedForms) -> Option<PoseScalar> {
-        self.try_point_of(bad, Patch::Disc, point, proved)
-    }
-
-    /// Does what [`Examiner::try_point`] does with a point of a patch.
-    fn try_point_of(
+    /// Takes the pose at a point of a patch if it is bad and nearer than the one that is known; returns a constraint that it violates, of
+    /// those that are not proved there.
+    fn try_point(
         &self,
         bad: &mut Option<BadPose>,
         patch: Patch,
@@ -82,7 +77,7 @@ impl Examiner<'_> {
         };
         for place in 0..=4 * ORIENTATIONS {
             let phi = first + (last - first) * place as f64 / (4 * ORIENTATIONS) as f64;
-            self.try_point(&mut bad, [0.0, 0.0, phi], ProvedForms::default());
+            self.try_point(&mut bad, Patch::Disc, [0.0, 0.0, phi], ProvedForms::default());
         }
         while bad.is_none() && radius < limit {
             for place in 0..DIRECTIONS * ORIENTATIONS {
@@ -90,7 +85,7 @@ impl Examiner<'_> {
                 let phi = first + (last - first) * (place / DIRECTIONS) as f64 / (ORIENTATIONS - 1) as f64;
                 let point = [radius, theta, phi];
                 if bad.is_none_or(|bad| radius <= bad.distance)
-                    && let Some(scalar) = self.try_point(&mut bad, point, ProvedForms::default())
+                    && let Some(scalar) = self.try_point(&mut bad, Patch::Disc, point, ProvedForms::default())
                 {
                     self.move_inwards(&mut bad, point, scalar);
                 }
@@ -115,7 +110,7 @@ impl Examiner<'_> {
                     moved[*k] += direction * step;
                     moved[2] = moved[2].clamp(first, last);
                     moved[0] *= 1.0 - 1e-6;
-                    if self.try_point(bad, moved, others).is_some() {
+                    if self.try_point(bad, Patch::Disc, moved, others).is_some() {
                         point = moved;
                         has_moved = true;
                         break;
@@ -138,7 +133,10 @@ impl Examiner<'_> {
         let (mut good, mut bad) = (0.95 * point[0], point[0]);
         for _ in 0..18 {
             let middle = 0.5 * (good + bad);
-            if self.try_point(known, [middle, point[1], point[2]], others).is_some() {
+            if self
+                .try_point(known, Patch::Disc, [middle, point[1], point[2]], others)
+                .is_some()
+            {
                 bad = middle;
             } else {
                 good = middle;
@@ -158,7 +156,7 @@ impl Examiner<'_> {
             for place in 0..ORIENTATIONS {
                 let phi = first + (last - first) * place as f64 / (ORIENTATIONS - 1) as f64;
                 let at = Patch::Rectangle([position; 2]);
-                self.try_point_of(&mut bad, at, [position.x, position.y, phi], ProvedForms::default());
+                self.try_point(&mut bad, at, [position.x, position.y, phi], ProvedForms::default());
             }
         }
         bad
@@ -176,13 +174,13 @@ impl Examiner<'_> {
         // What the polynomials tell of a pose need not be tried.
         let known_at = |epsilon| part.proved.with_those_that_hold_at(found, epsilon);
         let middle = part.point([0.0; VARIABLES]);
-        self.try_point_of(bad, part.patch, middle, known_at([0.0; VARIABLES]));
+        self.try_point(bad, part.patch, middle, known_at([0.0; VARIABLES]));
         if part.lower[0] == 0.0 && part.patch == Patch::Disc {
-            self.try_point(bad, [0.0, 0.0, middle[2]], part.proved);
+            self.try_point(bad, Patch::Disc, [0.0, 0.0, middle[2]], part.proved);
         }
         if let Some(least) = worst.map(|(_, value)| value.least_point()) {
             let point = part.point(least);
-            if let Some(scalar) = self.try_point_of(bad, part.patch, point, known_at(least))
+            if let Some(scalar) = self.try_point(bad, part.patch, point, known_at(least))
                 && !self.is_prescribed()
             {
                 self.nearest_bad(bad, point, scalar);

@@ -19,7 +19,6 @@ mod travel;
 use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
 use motion::MotionForms;
-use plain::checker_of_slow_limits;
 use reach::ReachForms;
 use strength::StrengthForms;
 pub(super) use travel::{Travel, TravelForms};
@@ -177,6 +176,7 @@ impl<'a> Forms<'a> {
     pub fn new(model: &'a Model, design: &'a Design) -> Result<Self, CertifyError> {
         let frames = [0, 1, 2].map(|index| LegFrameEnclosure::new(design, &model.settings().legs.geometry, index));
         let (strength, motion) = (StrengthForms::new(model, design), MotionForms::new(model, design));
+        let slow = model.thresholds_of(design).that_take_long();
         Ok(Self {
             sign: 1.0,
             design,
@@ -185,7 +185,7 @@ impl<'a> Forms<'a> {
             to_length: Interval::exactly(design.platform_radius()) / characteristic_length(model, design, &frames),
             separations: Separations::new(model, design),
             reach: ReachForms::new(model, design),
-            slow: checker_of_slow_limits(model, design),
+            slow: (!slow.is_empty()).then(|| model.checker(design)),
             strength,
             motion,
             frames,
@@ -241,15 +241,11 @@ impl<'a> Forms<'a> {
             if let Some(separations) = &self.separations
                 && found.needs(PoseScalar::Clearance)
             {
-                separate(
-                    separations,
-                    &separations.lay_out(self.design, &self.frames, pose, &legs),
-                    &mut found,
-                );
+                let boxes = separations.lay_out(self.design, &self.frames, pose, &legs);
+                separate(separations, &boxes, &mut found);
             }
-            let has_values = found.iter().all(|(_, value)| !value.range()[0].is_nan());
-            found.is_complete = has_values;
-            if has_values {
+            found.is_complete = found.values.iter().all(|(_, value)| !value.range()[0].is_nan());
+            if found.is_complete {
                 self.enclose_reach(pose, &legs, &mut found);
                 self.enclose_strength(&legs, (detail, &mut found));
                 self.enclose_motion(pose, &legs, &mut found);
