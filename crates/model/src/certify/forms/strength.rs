@@ -56,6 +56,7 @@ impl Forms<'_> {
             JointKind::Prismatic => Interval::exactly(1.0),
             JointKind::Revolute => frame.link,
         };
+        let transmission = EnclosedNumber(leg.transmission_square).sqrt();
         let platform_radius = Interval::exactly(self.design.platform_radius());
         LegLoadPath {
             tangent: planar(chain.tangent),
@@ -68,7 +69,7 @@ impl Forms<'_> {
             rail: chain.guides[0].map(|_| planar(frame.rail.axis().map(TaylorModel::constant))),
             u: planar(leg.u),
             moment: EnclosedNumber(leg.moment.scaled(platform_radius)),
-            transmission: EnclosedNumber(root(leg.transmission_square).scaled(lever)),
+            transmission: EnclosedNumber(transmission.0.scaled(lever)),
         }
     }
 
@@ -171,8 +172,4 @@ fn decoupled(compliance: &[TaylorModel; 6]) -> [f64; 2] {
 
 pub(super) fn planar([x, y]: PlanarModel) -> Planar<EnclosedNumber> {
     Planar::new(EnclosedNumber(x), EnclosedNumber(y))
-}
-
-fn root(square: TaylorModel) -> TaylorModel {
-    EnclosedNumber(square).sqrt().0
 }
