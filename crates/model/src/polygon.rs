@@ -104,10 +104,7 @@ impl Polygon {
     pub fn contains(&self, point: DVec2) -> bool {
         self.sides().fold(false, |inside, [from, to]| {
             let straddles = (from.y > point.y) != (to.y > point.y);
-            let crosses = || {
-                let x = from.x + (point.y - from.y) / (to.y - from.y) * (to.x - from.x);
-                point.x < x
-            };
+            let crosses = || point.x < from.x + (point.y - from.y) / (to.y - from.y) * (to.x - from.x);
             inside != (straddles && crosses())
         })
     }
@@ -148,7 +145,7 @@ impl Polygon {
     /// side of the rectangle that holds the polygon.
     pub fn lattice(&self, count: usize) -> Vec<DVec2> {
         let [low, high] = self.bounds();
-        let spacing = (high - low).max_element() / count as f64;
+        let spacing = self.spacing(count);
         let [columns, rows] = (high - low)
             .to_array()
             .map(|side| (side / spacing).round().max(1.0) as usize);
@@ -172,10 +169,7 @@ fn meet(a: &[DVec2; 2], b: &[DVec2; 2]) -> bool {
     let turn = |from: DVec2, to: DVec2, point: DVec2| (to - from).perp_dot(point - from);
     let (first, second) = (turn(a[0], a[1], b[0]), turn(a[0], a[1], b[1]));
     let (third, fourth) = (turn(b[0], b[1], a[0]), turn(b[0], b[1], a[1]));
-    let on = |side: &[DVec2; 2], point: DVec2| {
-        let nearest = side[0].lerp(side[1], nearest_on_segment(point, side[0], side[1]));
-        nearest == point
-    };
+    let on = |[from, to]: &[DVec2; 2], point: DVec2| from.lerp(*to, nearest_on_segment(point, *from, *to)) == point;
     (first * second < 0.0 && third * fourth < 0.0) || on(a, b[0]) || on(a, b[1]) || on(b, a[0]) || on(b, a[1])
 }
 

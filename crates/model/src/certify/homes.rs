@@ -3,6 +3,8 @@
 //! Every window of orientations contains an infeasible pose at most `U` away from the centre if the orientations of such poses leave
 //! no gap wider than a window.
 
+use std::f64::consts::TAU;
+
 use super::CertifyError;
 use super::forms::{Forms, ProvedForms};
 use crate::enclosure::{Interval, PoseEnclosure};
@@ -77,7 +79,7 @@ impl Homes<'_> {
     fn sample(&mut self) {
         let count = (PER_WINDOW * 360.0 / self.model.settings().workspace.rotation_range_deg).ceil() as usize;
         for k in 0..count {
-            self.look_at(std::f64::consts::TAU * k as f64 / count as f64);
+            self.look_at(TAU * k as f64 / count as f64);
         }
         self.found.sort_by(|a, b| a.phi.total_cmp(&b.phi));
     }
@@ -88,7 +90,7 @@ impl Homes<'_> {
         let mut distance = 0.0;
         while distance <= self.far {
             for direction in 0..self.directions {
-                let theta = std::f64::consts::TAU * direction as f64 / DIRECTIONS as f64;
+                let theta = TAU * direction as f64 / DIRECTIONS as f64;
                 if self.is_bad(distance, theta, phi) {
                     let nearest = self.move_inwards(inner, distance, theta, phi);
                     self.found.push(BadPose { phi, distance: nearest });
@@ -106,7 +108,7 @@ impl Homes<'_> {
     /// Returns the least distance found at which the orientation has an infeasible pose, near the direction `theta`.
     fn move_inwards(&self, inner: f64, outer: f64, mut theta: f64, phi: f64) -> f64 {
         let mut best = outer;
-        let mut step = std::f64::consts::TAU / DIRECTIONS as f64;
+        let mut step = TAU / DIRECTIONS as f64;
         // Nearer than that, all are alike.
         let least = inner.max(if outer > self.near { self.near } else { outer });
         for _ in 0..12 {
@@ -197,12 +199,8 @@ impl Homes<'_> {
         let count = self.found.len();
         let middle = |a: usize, b: usize| {
             let (first, second) = (self.found[a].phi, self.found[b].phi);
-            let second = if second < first {
-                second + std::f64::consts::TAU
-            } else {
-                second
-            };
-            (0.5 * (first + second)) % std::f64::consts::TAU
+            let second = if second < first { second + TAU } else { second };
+            (0.5 * (first + second)) % TAU
         };
         let mut at = vec![middle(from, (from + 1) % count), middle((to + count - 1) % count, to)];
         // And next to the pose that closes it.

@@ -255,44 +255,28 @@ impl Model {
         if let Some(scalar) = forms::uncovered(&self.thresholds_of(design)) {
             return Err(CertifyError::Uncovered(scalar));
         }
-        let check = |name, value: f64, valid: bool, expected| {
-            if valid {
-                Ok(())
-            } else {
-                Err(CertifyError::Option { name, value, expected })
-            }
-        };
+        let is_radius = |value: f64| (0.0..=1e12).contains(&value);
         let CertifyOptions {
-            phi_deg,
-            claimed_radius,
+            phi_deg: phi,
+            claimed_radius: claimed,
             tolerance,
             ..
         } = *options;
-        check(
-            "the home orientation",
-            phi_deg,
-            phi_deg.abs() <= 3600.0,
-            "within ±3600°",
-        )?;
-        check(
-            "the claimed radius",
-            claimed_radius,
-            (0.0..=1e12).contains(&claimed_radius),
-            "from 0 to 1e12 m",
-        )?;
-        let blind_radius = options.blind_radius.unwrap_or(1.0);
-        check(
-            "the blind radius",
-            blind_radius,
-            (0.0..=1e12).contains(&blind_radius),
-            "from 0 to 1e12 m",
-        )?;
-        check(
-            "the tolerance",
-            tolerance,
-            (1e-12..1.0).contains(&tolerance),
-            "from 1e-12 to below 1",
-        )?;
+        let blind = options.blind_radius.unwrap_or(1.0);
+        let checked = [
+            ("the home orientation", phi, phi.abs() <= 3600.0, "within ±3600°"),
+            ("the claimed radius", claimed, is_radius(claimed), "from 0 to 1e12 m"),
+            ("the blind radius", blind, is_radius(blind), "from 0 to 1e12 m"),
+            (
+                "the tolerance",
+                tolerance,
+                (1e-12..1.0).contains(&tolerance),
+                "from 1e-12 to below 1",
+            ),
+        ];
+        if let Some((name, value, _, expected)) = checked.into_iter().find(|(_, _, is_valid, _)| !is_valid) {
+            return Err(CertifyError::Option { name, value, expected });
+        }
         search::certify(self, design, options, observer, workers)
     }
 

@@ -6,7 +6,7 @@
 use super::forms::{Travel, TravelForms};
 use crate::dynamics::TaskMotion;
 use crate::enclosure::TaylorModel;
-use crate::evaluation::{Bound, Model, Quantity, TaskFigures, TaskOutcome, largest_of_legs};
+use crate::evaluation::{Model, Quantity, TaskFigures, TaskOutcome, largest_of_legs};
 use crate::mechanism::{Design, JointKind};
 
 /// Share by which a bound may exceed the figure that it encloses.
@@ -229,9 +229,9 @@ impl Proof<'_> {
     fn run(&mut self) -> MotionVerdict {
         let mut open = Vec::new();
         let motion = self.motion;
-        let (mut stretches, mut begin) = (motion.stretches(), 0.0);
+        let mut stretches = motion.stretches();
         stretches.reverse();
-        for (piece, duration) in motion.durations().iter().enumerate() {
+        for (piece, (duration, begin)) in motion.durations().iter().zip(motion.begins()).enumerate() {
             let mut waiting = stretches.clone();
             while let Some([from, to]) = waiting.pop() {
                 let Err((claim, is_wrong)) = self.examine(piece, [from, to]) else {
@@ -256,7 +256,6 @@ impl Proof<'_> {
                     return MotionVerdict::Open(open[0]);
                 }
             }
-            begin += duration + motion.dwell();
         }
         match open.first() {
             Some(moment) => MotionVerdict::Open(*moment),
@@ -289,24 +288,14 @@ impl Model {
 
     /// Returns the figures of a motion that are to be bounded, with their limits.
     fn claims(&self, design: &Design, outcome: &TaskOutcome, figures: &TaskFigures) -> [Figure; 3] {
-        let limits = |quantity: Quantity| {
-            let of_quantity = self
-                .settings()
-                .limits
-                .iter()
-                .filter(move |limit| limit.quantity == quantity);
-            of_quantity.map(|limit| (limit.quantity, limit.bound))
+        let bounds = |quantity: Quantity| {
+            let limits = self.settings().limits.iter();
+            limits
+                .filter(move |limit| limit.quantity == quantity)
+                .map(|limit| limit.bound)
         };
-        let at_most = |quantity: Quantity| {
-            limits(quantity).filter_map(|(quantity, bound)| match bound {
-                Bound::AtMost(most) => Some((quantity, most)),
-                Bound::AtLeast(_) => None,
-            })
-        };
-        let reach = limits(Quantity::PathReach).filter_map(|(quantity, bound)| match bound {
-            Bound::AtLeast(least) => Some((quantity, -least)),
-            Bound::AtMost(_) => None,
-        });
+        let at_most = |quantity: Quantity| bounds(quantity).filter_map(move |bound| Some((quantity, bound.most()?)));
+        let reach = bounds(Quantity::PathReach).filter_map(|bound| Some((Quantity::PathReach, -bound.least()?)));
         let [speed, force] = match design.architecture().actuator() {
             JointKind::Prismatic => [Quantity::PathSpeed, Quantity::PathForce],
             JointKind::Revolute => [Quantity::PathRate, Quantity::PathTorque],

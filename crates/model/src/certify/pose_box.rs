@@ -39,9 +39,7 @@ impl PoseBox {
 
     /// Middle, and a radius that reaches both ends.
     pub fn middle_and_radius(&self, k: usize) -> (f64, f64) {
-        let middle = 0.5 * (self.lower[k] + self.upper[k]);
-        let radius = (self.upper[k] - middle).max(middle - self.lower[k]);
-        (middle, if radius == 0.0 { 0.0 } else { radius.next_up() })
+        Interval::new(self.lower[k], self.upper[k]).middle_and_radius()
     }
 
     /// Volume in the units of its variables.

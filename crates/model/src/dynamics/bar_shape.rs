@@ -2,7 +2,7 @@
 
 use super::displacement::{Row, add, add_square, combined};
 use crate::lanes::{LaneJob, Real, less, scaled, sum};
-use crate::strength::path::BarLanes;
+use crate::strength::bars::BarLanes;
 
 /// Abscissas and weights of the Gauss rule with four points on `[−1, 1]`, which is exact for the product of two cubics.
 pub(super) const GAUSS: [[f64; 2]; 4] = [

@@ -23,7 +23,7 @@ pub struct Drive {
     pub mass: f64,
 }
 
-/// Drives in the order of their masses; of equally heavy ones, in the order of their names.
+/// Drives in the order of their masses; of equally heavy ones, in the order of their names. By default there are none, which asks nothing.
 ///
 /// ```
 /// use kinefront_model::dynamics::{Drive, DriveCatalogue};
@@ -43,15 +43,8 @@ pub struct Drive {
 /// assert!(DriveCatalogue::new(vec![drive("weightless", 0.0)]).is_err());
 /// # Ok::<(), kinefront_model::dynamics::DriveCatalogueError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct DriveCatalogue(Arc<[Drive]>);
-
-impl Default for DriveCatalogue {
-    /// A catalogue without drives, which asks nothing.
-    fn default() -> Self {
-        Self(Arc::new([]))
-    }
-}
 
 /// Why drives are not a catalogue.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

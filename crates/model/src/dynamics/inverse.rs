@@ -72,7 +72,33 @@ impl<V: Real> LaneJob for Drives<'_, V> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        self.model.drives_here(&self)
+        let Self {
+            model, inputs, legs, ..
+        } = self;
+        let (twist, acceleration, (gravity, tool)) = (self.twist, self.acceleration, self.loads);
+        let like = twist[0];
+        let platform = platform_motion(twist, acceleration);
+        let mut needed = less(&model.platform_wrench(inputs, legs, &platform, gravity), &tool);
+        let mut drives = [DriveMotion {
+            speed: like,
+            acceleration: like,
+            force: like,
+        }; LEGS];
+        for (index, leg) in legs.iter().enumerate() {
+            let (motions, rates) = chain_motion(leg, &platform);
+            let forces = model.joint_forces(leg, &motions, gravity);
+            for joint in 0..LEGS {
+                needed = sum(&needed, &scaled(&leg.rates[joint], forces[joint]));
+            }
+            let rotor = rates[model.driven] * like.splat(model.settings.drives.of(model.actuator));
+            needed = sum(&needed, &scaled(&leg.rates[model.driven], rotor));
+            drives[index].speed = dot(&leg.rates[model.driven], &twist);
+            drives[index].acceleration = rates[model.driven];
+        }
+        for (drive, leg) in drives.iter_mut().zip(legs) {
+            drive.force = leg.transmission * dot(&leg.column, &needed);
+        }
+        drives
     }
 }
 
@@ -110,41 +136,6 @@ impl DynamicsModel {
         let loads = (self.gravity(zero), self.settings.tool.map(|part| zero.splat(part)));
         let drives = self.drives(inputs, &legs, twist, acceleration, loads);
         drives.map(|drive| [drive.speed.0, drive.force.0])
-    }
-
-    #[inline(always)]
-    fn drives_here<V: Real>(&self, job: &Drives<'_, V>) -> [DriveMotion<V>; LEGS] {
-        let Drives {
-            inputs,
-            legs,
-            twist,
-            acceleration,
-            loads: (gravity, tool),
-            ..
-        } = *job;
-        let like = twist[0];
-        let platform = platform_motion(twist, acceleration);
-        let mut needed = less(&self.platform_wrench(inputs, legs, &platform, gravity), &tool);
-        let mut drives = [DriveMotion {
-            speed: like,
-            acceleration: like,
-            force: like,
-        }; LEGS];
-        for (index, leg) in legs.iter().enumerate() {
-            let (motions, rates) = chain_motion(leg, &platform);
-            let forces = self.joint_forces(leg, &motions, gravity);
-            for joint in 0..LEGS {
-                needed = sum(&needed, &scaled(&leg.rates[joint], forces[joint]));
-            }
-            let rotor = rates[self.driven] * like.splat(self.settings.drives.of(self.actuator));
-            needed = sum(&needed, &scaled(&leg.rates[self.driven], rotor));
-            drives[index].speed = dot(&leg.rates[self.driven], &twist);
-            drives[index].acceleration = rates[self.driven];
-        }
-        for (drive, leg) in drives.iter_mut().zip(legs) {
-            drive.force = leg.transmission * dot(&leg.column, &needed);
-        }
-        drives
     }
 
     /// Returns the wrench about `P` that moves the platform with its payload.

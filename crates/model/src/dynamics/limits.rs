@@ -42,18 +42,13 @@ impl<V: Real> LaneJob for LimitJob<'_, V> {
     #[inline(always)]
     fn run(self) -> V::Mask {
         let Self {
-            model,
-            inputs,
-            legs,
-            value,
-            limit,
-            good,
+            model, inputs, legs, ..
         } = self;
-        let most = legs[0].transmission.splat(limit);
-        match value {
+        let (good, most) = (self.good, legs[0].transmission.splat(self.limit));
+        match self.value {
             MotionValue::NaturalFrequency => model.vibrates_above(inputs, legs, most, good),
             MotionValue::PositionError => model.errs_within(&model.leg_errors(inputs, legs), most, good),
-            _ => good & most.at_least(model.demand(inputs, legs, value)),
+            value => good & most.at_least(model.demand(inputs, legs, value)),
         }
     }
 }

@@ -15,6 +15,7 @@ mod error;
 mod frame;
 mod frequency;
 mod inverse;
+mod law;
 mod legs;
 mod limits;
 mod modes;
@@ -25,11 +26,12 @@ mod task;
 pub use drive::{Drive, DriveCatalogue, DriveCatalogueError};
 pub(crate) use effort::{MotionJob, MotionValue};
 pub(crate) use enclosed_task::EnclosedMotion;
+pub use law::MotionLaw;
 pub(crate) use legs::DynamicsInputs;
 pub(crate) use limits::{LegsJob, LimitJob};
 pub use report::{Accuracy, DynamicsReport, ErrorBudget, Gains, Motion, Response, VibratingBar, VibratingPoint};
 pub use settings::{Anywhere, DriveInertia, DynamicsSettings, Payload, Tolerances};
-pub use task::{MotionLaw, Task, TaskFrame, TaskInstant, TaskMotion, TaskShape, TaskTiming};
+pub use task::{Task, TaskFrame, TaskInstant, TaskMotion, TaskShape, TaskTiming};
 
 use glam::DVec2;
 

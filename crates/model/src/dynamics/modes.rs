@@ -6,13 +6,14 @@
 use super::DynamicsModel;
 use super::bar_shape::{BarEnds, BarShape};
 use super::displacement::{
-    Coordinates, Displacement, add, add_square, add_twist, combined, in_direction, lift, rotation, slope, times,
+    Coordinates, Displacement, Row, add, add_square, add_twist, combined, in_direction, lift, rotation, slope, times,
 };
 use super::legs::{DynamicsInputs, MovingLeg};
 use crate::lanes::{LaneJob, Planar, Real, dot, scaled, sum};
 use crate::spatial::LEGS;
 use crate::stiffness::add_bar;
-use crate::strength::path::{BARS, BarLanes, DISTAL, End, PLATFORM, PathJoint};
+use crate::strength::bars::BarLanes;
+use crate::strength::path::{BARS, DISTAL, End, PLATFORM, PathJoint};
 
 /// What a leg contributes to the mass in the plane, as a function of its own.
 struct LegInPlane<'a, V, C> {
@@ -27,14 +28,9 @@ impl<V: Real, C: Coordinates<V>> LaneJob for LegInPlane<'_, V, C> {
 
     #[inline(always)]
     fn run(self) -> [V; 6] {
-        let Self {
-            model,
-            leg,
-            compliance,
-            coordinates,
-        } = self;
-        let mut mass = [compliance.splat(0.0); 6];
-        model.add_leg_in_plane(&mut mass, leg, compliance, coordinates, |_, _| {});
+        let mut mass = [self.compliance.splat(0.0); 6];
+        self.model
+            .add_leg_in_plane(&mut mass, self.leg, self.compliance, self.coordinates, |_, _| {});
         mass
     }
 }
@@ -52,14 +48,9 @@ impl<V: Real, C: Coordinates<V>> LaneJob for LegOutOfPlane<'_, V, C> {
 
     #[inline(always)]
     fn run(self) -> [V; 6] {
-        let Self {
-            model,
-            leg,
-            forces,
-            coordinates,
-        } = self;
-        let mut mass = [leg.transmission.splat(0.0); 6];
-        model.add_leg_out_of_plane(&mut mass, leg, &forces, coordinates, |_, _| {});
+        let mut mass = [self.leg.transmission.splat(0.0); 6];
+        self.model
+            .add_leg_out_of_plane(&mut mass, self.leg, &self.forces, self.coordinates, |_, _| {});
         mass
     }
 }
@@ -76,16 +67,13 @@ impl DynamicsModel {
         let like = legs[0].transmission;
         let mut mass = [like.splat(0.0); 6];
         for (index, leg) in legs.iter().enumerate() {
-            let compliance = inputs.legs.along[index];
-            add(
-                &mut mass,
-                &like.call_apart(LegInPlane {
-                    model: self,
-                    leg,
-                    compliance,
-                    coordinates,
-                }),
-            );
+            let of_leg = like.call_apart(LegInPlane {
+                model: self,
+                leg,
+                compliance: inputs.legs.along[index],
+                coordinates,
+            });
+            add(&mut mass, &of_leg);
         }
         let payload = &self.settings.payload;
         let centre = self.payload_centre(inputs);
@@ -118,6 +106,28 @@ impl DynamicsModel {
         [moved.x, moved.y, turn]
     }
 
+    /// Returns what the joints of a leg under a force along its line have to add to what the bars give for a unit force.
+    #[inline(always)]
+    fn rates<V: Real, C: Coordinates<V>>(
+        &self,
+        leg: &MovingLeg<V>,
+        coordinates: C,
+        gives: &[[V; 3]; BARS],
+        force: &Row<V>,
+    ) -> [Row<V>; 3] {
+        let (zero, one) = (force[0].splat(0.0), force[0].splat(1.0));
+        let mut given = [zero; 3];
+        for bar in self.paths[0].first..BARS {
+            given = sum(&given, &gives[bar]);
+        }
+        let mut rates = [[zero; 3]; 3];
+        for joint in 0..3 {
+            let taken = dot(&leg.rates[joint], &given);
+            rates[joint] = combined(&coordinates.of(&leg.rates[joint]), one, force, -taken);
+        }
+        rates
+    }
+
     /// Adds what a leg contributes to the mass in the plane, and shows how each of its bars moves.
     #[inline(always)]
     pub(super) fn add_leg_in_plane<V: Real, C: Coordinates<V>>(
@@ -134,18 +144,11 @@ impl DynamicsModel {
         let of = &self.paths[0];
         let first = of.first;
         let mut gives = [[zero; 3]; BARS];
-        let mut given = [zero; 3];
         for bar in first..BARS {
             gives[bar] = self.give(leg, bar);
-            given = sum(&given, &gives[bar]);
         }
-        // What the joints have to add to what the bars give.
         let platform = coordinates.platform(like);
-        let mut rates = [[zero; 3]; 3];
-        for joint in 0..3 {
-            let taken = dot(&leg.rates[joint], &given);
-            rates[joint] = combined(&coordinates.of(&leg.rates[joint]), like.splat(1.0), &force, -taken);
-        }
+        let rates = self.rates(leg, coordinates, &gives, &force);
         add_square(
             mass,
             &rates[self.driven],
@@ -245,16 +248,13 @@ impl DynamicsModel {
         let like = legs[0].transmission;
         let mut mass = [like.splat(0.0); 6];
         for (index, leg) in legs.iter().enumerate() {
-            let forces = coordinates.forces(&inputs.legs.stiffness[index]);
-            add(
-                &mut mass,
-                &like.call_apart(LegOutOfPlane {
-                    model: self,
-                    leg,
-                    forces,
-                    coordinates,
-                }),
-            );
+            let of_leg = like.call_apart(LegOutOfPlane {
+                model: self,
+                leg,
+                forces: coordinates.forces(&inputs.legs.stiffness[index]),
+                coordinates,
+            });
+            add(&mut mass, &of_leg);
         }
         let payload = &self.settings.payload;
         let platform = coordinates.platform(like);

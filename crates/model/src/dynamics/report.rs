@@ -128,14 +128,9 @@ impl DynamicsReport {
     }
 }
 
-/// Natural frequencies of a block with its mass, in increasing order \[Hz\], and how the platform moves at each.
-struct Vibrations {
-    frequencies: [f64; 3],
-    shapes: [[f64; 3]; 3],
-}
-
-/// Returns the vibrations of a block with its mass; `None` where the mass is not positive definite.
-fn vibrations(stiffness: &[f64; 6], mass: &[f64; 6]) -> Option<Vibrations> {
+/// Returns the natural frequencies of a block with its mass, in increasing order \[Hz\], and how the platform moves at each; `None` where
+/// the mass is not positive definite.
+fn vibrations(stiffness: &[f64; 6], mass: &[f64; 6]) -> Option<([f64; 3], [[f64; 3]; 3])> {
     let matrix = |m: &[f64; 6]| Matrix3::from(full(m));
     let factor = matrix(mass).cholesky()?.l();
     let half = factor.solve_lower_triangular(&matrix(stiffness))?;
@@ -151,10 +146,7 @@ fn vibrations(stiffness: &[f64; 6], mass: &[f64; 6]) -> Option<Vibrations> {
         frequencies[0] = lowest;
     }
     let shapes = factor.tr_solve_lower_triangular(&found.eigenvectors)?;
-    Some(Vibrations {
-        frequencies,
-        shapes: order.map(|k| shapes.column(k).into_owned().into()),
-    })
+    Some((frequencies, order.map(|k| shapes.column(k).into_owned().into())))
 }
 
 /// Returns the largest length of the linear part of some rows, and the largest magnitude of their rotational part.
@@ -231,12 +223,10 @@ impl DynamicsModel {
                 vibrations(&inputs.legs.out_of_plane(), &out_of_plane)?,
             ]),
         };
-        let of_both = |[in_plane, out_of_plane]: &[Vibrations; 2]| [in_plane.frequencies, out_of_plane.frequencies];
-        let shapes_of_both = |[in_plane, out_of_plane]: &[Vibrations; 2]| [in_plane.shapes, out_of_plane.shapes];
         let direction = [found.direction.x, found.direction.y, 0.0];
         let report = DynamicsReport {
-            frequencies: vibrations.as_ref().map(of_both),
-            shapes: vibrations.as_ref().map(shapes_of_both),
+            frequencies: vibrations.map(|both| both.map(|(frequencies, _)| frequencies)),
+            shapes: vibrations.map(|both| both.map(|(_, shapes)| shapes)),
             bar_frequency: std::f64::consts::FRAC_PI_2 * (self.bar_bending / (longest * longest * longest)).sqrt(),
             mass_in_plane: full(&in_plane),
             mass_out_of_plane: full(&out_of_plane),

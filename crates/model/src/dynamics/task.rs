@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Motion;
-use crate::lanes::Real;
+use super::law::MotionLaw;
 use crate::polygon::Polygon;
 use crate::spatial::Pose;
 
@@ -20,20 +20,6 @@ pub enum TaskShape {
     PickAndPlace {
         /// The swing.
         swing: f64,
-    },
-}
-
-/// How a piece of a path is covered from rest to rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum MotionLaw {
-    /// A polynomial of the fifth degree.
-    Quintic,
-    /// An acceleration that is a trapezoid over the first share of the time, 0 then, and the reverse over the last share.
-    Trapezoid {
-        /// Share of the time in which the motion accelerates, above 0 and at most 1/2.
-        blend: f64,
-        /// Share of that in which the acceleration rises, and in which it falls, above 0 and at most 1/2.
-        ramp: f64,
     },
 }
 
@@ -126,105 +112,6 @@ pub struct TaskMotion {
     samples: usize,
 }
 
-impl MotionLaw {
-    /// Returns the share of the path that is covered at a share of the time, and its first and second derivative.
-    pub fn at(self, share: f64) -> [f64; 3] {
-        self.on_stretch(share, share)
-    }
-
-    /// Returns the shares of the time between which the law is one polynomial, the ends 0 and 1 included.
-    pub(super) fn breaks(self) -> Vec<f64> {
-        match self {
-            MotionLaw::Quintic => vec![0.0, 1.0],
-            MotionLaw::Trapezoid { blend, ramp } => {
-                let flank = ramp * blend;
-                let half = [0.0, flank, blend - flank, blend, 0.5];
-                let mirrored = half.iter().rev().skip(1).map(|share| 1.0 - share);
-                let mut breaks: Vec<f64> = half.into_iter().chain(mirrored).collect();
-                breaks.dedup();
-                breaks
-            }
-        }
-    }
-
-    /// Returns what [`MotionLaw::at`] does, by the polynomial that holds at the share `stretch`.
-    pub(super) fn on_stretch<V: Real>(self, share: V, stretch: f64) -> [V; 3] {
-        let x = share;
-        let number = |value: f64| x.splat(value);
-        match self {
-            MotionLaw::Quintic => [
-                x * x * x * (number(10.0) + x * (number(-15.0) + number(6.0) * x)),
-                number(30.0) * x * x * (number(1.0) + x * (x - number(2.0))),
-                number(60.0) * x * (number(1.0) + x * (number(2.0) * x - number(3.0))),
-            ],
-            MotionLaw::Trapezoid { blend, ramp } => {
-                if stretch > 0.5 {
-                    let [way, speed, acceleration] = accelerating(number(1.0) - x, 1.0 - stretch, blend, ramp);
-                    [number(1.0) - way, speed, -acceleration]
-                } else {
-                    accelerating(x, stretch, blend, ramp)
-                }
-            }
-        }
-    }
-}
-
-/// Returns the way, speed and acceleration of a rising acceleration, from rest.
-fn rising<V: Real>(x: V, jerk: f64) -> [V; 3] {
-    let number = |value: f64| x.splat(value);
-    [
-        number(jerk) * x * x * x / number(6.0),
-        number(0.5 * jerk) * x * x,
-        number(jerk) * x,
-    ]
-}
-
-/// Returns the way, speed and acceleration of the acceleration `most`, from a way and speed.
-fn plateau<V: Real>(x: V, [way, speed]: [f64; 2], most: f64) -> [V; 3] {
-    let number = |value: f64| x.splat(value);
-    [
-        number(way) + x * (number(speed) + number(0.5 * most) * x),
-        number(speed) + number(most) * x,
-        number(most),
-    ]
-}
-
-/// Returns the way, speed and acceleration of an acceleration that falls from `most`, from a way and speed.
-fn falling<V: Real>(x: V, [way, speed]: [f64; 2], most: f64, jerk: f64) -> [V; 3] {
-    let number = |value: f64| x.splat(value);
-    [
-        number(way) + x * (number(speed) + x * (number(0.5 * most) - number(jerk) * x / number(6.0))),
-        number(speed) + x * (number(most) - number(0.5 * jerk) * x),
-        number(most) - number(jerk) * x,
-    ]
-}
-
-/// Returns the first half of a motion whose acceleration is a trapezoid, by the polynomial that holds at the share `stretch`.
-fn accelerating<V: Real>(share: V, stretch: f64, blend: f64, ramp: f64) -> [V; 3] {
-    let most = 1.0 / (blend * (1.0 - blend) * (1.0 - ramp));
-    let flank = ramp * blend;
-    let jerk = most / flank;
-    let after = |begin: f64| share - share.splat(begin);
-    if stretch <= flank {
-        return rising(share, jerk);
-    }
-    let [way, speed, _] = rising(flank, jerk);
-    if stretch <= blend - flank {
-        return plateau(after(flank), [way, speed], most);
-    }
-    let [way, speed, _] = plateau(blend - 2.0 * flank, [way, speed], most);
-    if stretch <= blend {
-        return falling(after(blend - flank), [way, speed], most, jerk);
-    }
-    let [way, speed, _] = falling(flank, [way, speed], most, jerk);
-    let zero = share.splat(0.0);
-    [
-        share.splat(way) + share.splat(speed) * after(blend),
-        share.splat(speed),
-        zero,
-    ]
-}
-
 impl Piece {
     fn between(from: [f64; 3], to: [f64; 3]) -> Option<Self> {
         let by = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
@@ -260,14 +147,6 @@ impl Piece {
     }
 }
 
-/// Largest speed, acceleration, rate of rotation and angular acceleration of a piece that takes a unit of time.
-struct Peaks {
-    velocity: f64,
-    acceleration: f64,
-    omega: f64,
-    alpha: f64,
-}
-
 impl Task {
     /// Returns the number of pieces of a path.
     pub fn pieces(&self) -> usize {
@@ -291,13 +170,13 @@ impl Task {
         if pieces.is_empty() {
             return None;
         }
-        let peaks: Vec<Peaks> = pieces.iter().map(|piece| self.peaks(piece)).collect();
+        let peaks: Vec<[f64; 4]> = pieces.iter().map(|piece| self.peaks(piece)).collect();
         let durations: Vec<f64> = match self.timing {
             TaskTiming::Cycle(time) => {
                 let moving = time - self.dwell * pieces.len() as f64;
                 let weights = peaks
                     .iter()
-                    .map(|peaks| peaks.acceleration.max(frame.lever * peaks.alpha).sqrt());
+                    .map(|[_, acceleration, _, alpha]| acceleration.max(frame.lever * alpha).sqrt());
                 let weights: Vec<f64> = weights.collect();
                 let all: f64 = weights.iter().sum();
                 weights.iter().map(|weight| moving * weight / all).collect()
@@ -309,11 +188,11 @@ impl Task {
                 alpha,
             } => {
                 let time = |peak: f64, limit: Option<f64>| limit.map_or(0.0, |limit| peak / limit);
-                let of = |peaks: &Peaks| {
-                    time(peaks.velocity, velocity)
-                        .max(time(peaks.acceleration, acceleration).sqrt())
-                        .max(time(peaks.omega, omega))
-                        .max(time(peaks.alpha, alpha).sqrt())
+                let of = |peaks: &[f64; 4]| {
+                    time(peaks[0], velocity)
+                        .max(time(peaks[1], acceleration).sqrt())
+                        .max(time(peaks[2], omega))
+                        .max(time(peaks[3], alpha).sqrt())
                 };
                 peaks.iter().map(of).collect()
             }
@@ -368,22 +247,15 @@ impl Task {
             .collect()
     }
 
-    fn peaks(&self, piece: &Piece) -> Peaks {
-        let mut peaks = Peaks {
-            velocity: 0.0,
-            acceleration: 0.0,
-            omega: 0.0,
-            alpha: 0.0,
-        };
-        let length = |vector: &[f64; 3]| (vector[0] * vector[0] + vector[1] * vector[1]).sqrt();
-        for sample in 0..=self.samples {
+    /// Returns the largest speed, acceleration, rate of rotation and angular acceleration of a piece that takes a unit of time.
+    fn peaks(&self, piece: &Piece) -> [f64; 4] {
+        let sizes = |[x, y, turn]: [f64; 3]| [(x * x + y * y).sqrt(), turn.abs()];
+        (0..=self.samples).fold([0.0; 4], |most, sample| {
             let (_, motion) = piece.at(self.law.at(sample as f64 / self.samples as f64));
-            peaks.velocity = peaks.velocity.max(length(&motion.twist));
-            peaks.acceleration = peaks.acceleration.max(length(&motion.acceleration));
-            peaks.omega = peaks.omega.max(motion.twist[2].abs());
-            peaks.alpha = peaks.alpha.max(motion.acceleration[2].abs());
-        }
-        peaks
+            let ([velocity, omega], [acceleration, alpha]) = (sizes(motion.twist), sizes(motion.acceleration));
+            let found = [velocity, acceleration, omega, alpha];
+            [0, 1, 2, 3].map(|k: usize| f64::max(most[k], found[k]))
+        })
     }
 }
 
@@ -404,12 +276,18 @@ impl TaskMotion {
         moving + self.dwell * self.durations.len() as f64
     }
 
+    /// Iterates over the times at which the pieces begin \[s\].
+    pub(crate) fn begins(&self) -> impl Iterator<Item = f64> + '_ {
+        self.durations.iter().scan(0.0, |begin, duration| {
+            let start = *begin;
+            *begin += duration + self.dwell;
+            Some(start)
+        })
+    }
+
     /// Iterates over the samples, both ends of each piece included.
     pub fn instants(&self) -> impl Iterator<Item = TaskInstant> + '_ {
-        let mut begin = 0.0;
-        self.durations.iter().enumerate().flat_map(move |(place, &duration)| {
-            let start = begin;
-            begin += duration + self.dwell;
+        self.begins().enumerate().flat_map(move |(place, start)| {
             (0..=self.samples).map(move |sample| self.instant(place, start, sample as f64 / self.samples as f64))
         })
     }
@@ -435,12 +313,8 @@ impl TaskMotion {
 
     /// Iterates over the moments at which the platform comes to rest: the beginning, and the end of each piece.
     pub fn rests(&self) -> impl Iterator<Item = TaskInstant> + '_ {
-        let mut begin = 0.0;
-        let ends = self.durations.iter().enumerate().map(move |(place, &duration)| {
-            let start = begin;
-            begin += duration + self.dwell;
-            self.instant(place, start, 1.0)
-        });
+        let ends = self.begins().enumerate();
+        let ends = ends.map(|(place, start)| self.instant(place, start, 1.0));
         std::iter::once(self.instant(0, 0.0, 0.0)).chain(ends)
     }
 

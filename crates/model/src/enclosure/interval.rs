@@ -107,6 +107,16 @@ impl Interval {
             ..product
         }
     }
+
+    /// Returns the larger of two numbers.
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self::new(self.lower.max(other.lower), self.upper.max(other.upper))
+    }
+
+    /// Returns the smaller of two numbers.
+    pub(crate) fn min(self, other: Self) -> Self {
+        Self::new(self.lower.min(other.lower), self.upper.min(other.upper))
+    }
 }
 
 /// Sums `Σ (−1)^k s^k / (2k + first)!`, which is the cosine of `√s` for `first` = 0, and its sine over `√s` for 1, for `s` up to 0.7.
@@ -231,15 +241,7 @@ mod tests {
         assert!(one.lower < 1.0 && one.upper > 1.0);
         let root = Interval::sqrt_3();
         assert!(root.lower * root.lower < 3.0 && root.upper * root.upper > 3.0);
-        assert!(
-            (Interval::exactly(1.0)
-                / Interval {
-                    lower: -1.0,
-                    upper: 1.0
-                })
-            .lower
-            .is_nan()
-        );
+        assert!((Interval::exactly(1.0) / Interval::new(-1.0, 1.0)).lower.is_nan());
         // sin(π) = 0.
         let (sine, cosine) = Interval::PI.sine_and_cosine();
         assert!(sine.lower <= 0.0 && sine.upper >= 0.0 && cosine.lower <= -1.0 && cosine.upper >= -1.0);

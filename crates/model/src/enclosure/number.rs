@@ -27,17 +27,6 @@ pub enum Comparison {
     Unknown,
 }
 
-impl Comparison {
-    /// Returns where numbers of one sign, +1 or −1, are above 0.
-    fn of_sign(sign: f64) -> Self {
-        if sign > 0.0 {
-            Comparison::Always
-        } else {
-            Comparison::Never
-        }
-    }
-}
-
 impl BitAnd for Comparison {
     type Output = Self;
 
@@ -67,6 +56,22 @@ impl EnclosedNumber {
             ..self.0
         };
         (Self(polynomial), self.0.remainder)
+    }
+
+    /// Returns where the difference of the number and another one satisfies a condition, which holds above 0 and not below it.
+    fn compared(self, other: Self, holds: impl Fn(f64) -> bool) -> Comparison {
+        let difference = self.0 - other.0;
+        let [lower, upper] = match difference.sure_sign() {
+            Some(sign) => [sign; 2],
+            None => difference.range(),
+        };
+        if holds(lower) {
+            Comparison::Always
+        } else if upper.is_nan() || holds(upper) {
+            Comparison::Unknown
+        } else {
+            Comparison::Never
+        }
     }
 
     /// Encloses what lies within a distance of the number.
@@ -153,16 +158,7 @@ fn inverse(matrix: &[[EnclosedNumber; 3]; 3]) -> [[EnclosedNumber; 3]; 3] {
             if i == k { one - product } else { -product }
         })
     });
-    let size = error.map(|row| {
-        row.map(|entry| {
-            let [lower, upper] = entry.range();
-            if lower.is_nan() || upper.is_nan() {
-                f64::NAN
-            } else {
-                upper.max(-lower)
-            }
-        })
-    });
+    let size = error.map(|row| row.map(|entry| entry.largest()));
     let (weights, norm) = row_norm(&size);
     let contracts = norm < 1.0;
     if !contracts {
@@ -309,11 +305,11 @@ impl Real for EnclosedNumber {
     }
 
     fn magnitude_bound(self) -> Self {
-        let [lower, upper] = self.0.range();
-        if lower.is_nan() || upper.is_nan() {
+        let largest = self.0.largest();
+        if largest.is_nan() {
             return Self(Self::UNKNOWN);
         }
-        Self(TaylorModel::exactly(upper.max(-lower)))
+        Self(TaylorModel::exactly(largest))
     }
 
     fn known_to_be(self, value: f64) -> Self {
@@ -321,33 +317,11 @@ impl Real for EnclosedNumber {
     }
 
     fn at_least(self, other: Self) -> Comparison {
-        let difference = self.0 - other.0;
-        if let Some(sign) = difference.sure_sign() {
-            return Comparison::of_sign(sign);
-        }
-        let [lower, upper] = difference.range();
-        if lower >= 0.0 {
-            Comparison::Always
-        } else if upper < 0.0 {
-            Comparison::Never
-        } else {
-            Comparison::Unknown
-        }
+        self.compared(other, |difference| difference >= 0.0)
     }
 
     fn exceeds(self, other: Self) -> Comparison {
-        let difference = self.0 - other.0;
-        if let Some(sign) = difference.sure_sign() {
-            return Comparison::of_sign(sign);
-        }
-        let [lower, upper] = difference.range();
-        if lower > 0.0 {
-            Comparison::Always
-        } else if upper <= 0.0 {
-            Comparison::Never
-        } else {
-            Comparison::Unknown
-        }
+        self.compared(other, |difference| difference > 0.0)
     }
 
     fn select(self, mask: Comparison, other: Self) -> Self {
@@ -356,12 +330,8 @@ impl Real for EnclosedNumber {
             Comparison::Never => other,
             Comparison::Unknown => {
                 // Both lie within half of their difference about their mean.
-                let [lower, upper] = (self.0 - other.0).times(0.5).range();
-                if lower.is_nan() || upper.is_nan() {
-                    return Self(Self::UNKNOWN);
-                }
-                let half = lower.abs().max(upper.abs());
-                Self((self.0 + other.0).times(0.5).plus(Interval::new(-half, half)))
+                let half = (self.0 - other.0).times(0.5).largest();
+                Self((self.0 + other.0).times(0.5)).widened(half)
             }
         }
     }

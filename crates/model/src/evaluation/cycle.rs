@@ -1,6 +1,6 @@
 //! The shortest cycle of a motion that the limits of a study allow a design (docs/model.md, section 15.10).
 
-use super::{Bound, Evaluation, Model, Quantity, QuantityLimit, quantities};
+use super::{Evaluation, Model, Quantity, QuantityLimit, quantities};
 use crate::dynamics::{Task, TaskTiming};
 
 /// The shortest cycle that a design can be asked for.
@@ -27,8 +27,7 @@ impl Model {
         let limits = self.settings().limits.iter().filter(|limit| {
             let is_worse_if_faster = Quantity::OF_TASK.contains(&limit.quantity)
                 && ![Quantity::CycleTime, Quantity::PathReach].contains(&limit.quantity);
-            let is_upper = matches!(limit.bound, Bound::AtMost(_));
-            is_worse_if_faster && is_upper && limit.quantity.is_of(&evaluation.design)
+            is_worse_if_faster && limit.bound.most().is_some() && limit.quantity.is_of(&evaluation.design)
         });
         let limits: Vec<QuantityLimit> = limits.copied().collect();
         if limits.is_empty() {

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::{Bound, Model, Quantity, SelectedDrive, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
+use super::{Model, Quantity, SelectedDrive, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};
 use crate::dynamics::{Drive, Task, TaskFrame};
 use crate::mechanism::{Architecture, Design};
 use crate::spatial::LEGS;
@@ -40,11 +40,7 @@ impl Model {
     fn allowed_utilization(&self) -> f64 {
         let limits = self.settings().limits.iter();
         let of_drives = limits.filter(|limit| limit.quantity == Quantity::DriveUtilization);
-        let bounds = of_drives.filter_map(|limit| match limit.bound {
-            Bound::AtMost(most) => Some(most),
-            Bound::AtLeast(_) => None,
-        });
-        bounds.fold(1.0, f64::min)
+        of_drives.filter_map(|limit| limit.bound.most()).fold(1.0, f64::min)
     }
 
     /// Moves a design along a task with the lightest drive that keeps the limit of its utilization, if the study has a catalogue, or with the motors and rotors

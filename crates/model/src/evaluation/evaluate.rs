@@ -57,17 +57,7 @@ fn evaluate<L: Leg>(
     sampling: &WorkspaceSampling,
     workers: &dyn Workers,
 ) -> (Evaluation, RegularWorkspace) {
-    let symmetric = model.is_symmetric_in(design, checker.bodies.stack().order);
-    let (found, worst) = match sampling.spec().region {
-        Region::Largest => (search(checker, sampling, design.base_radius(), symmetric), None),
-        _ => {
-            let objective = examined_objective(model, &checker.thresholds);
-            let (found, worst) =
-                search_prescribed(checker, sampling, design.base_radius(), symmetric, objective, workers);
-            (found, Some(worst))
-        }
-    };
-    let assembled = checker.assembly.value >= checker.assembly.threshold;
+    let (found, worst) = searched(model, checker, design, sampling, workers);
     let reporter = ConstraintSearch {
         model,
         checker,
@@ -76,63 +66,57 @@ fn evaluate<L: Leg>(
         workers,
     };
     let grid = sampling.grid();
-    let (constraints, mut violation, home) = match (found.home, worst) {
-        (Some(home), None) if assembled => (reporter.over_workspace(home, grid), 0.0, Some(home)),
-        (Some(home), Some(worst)) => {
-            let (constraints, violation) = reporter.over_region(home, worst);
-            (constraints, violation, Some(home).filter(|_| violation == 0.0))
-        }
-        _ => {
-            let (constraints, violation) = reporter.at_best_centre();
-            (constraints, violation, None)
-        }
-    };
+    let (constraints, violation, home) = reporter.report(worst, grid);
     let workspace_radius = if home.is_some() { found.radius } else { 0.0 };
     let height = checker.bodies.height();
     let mut quantities = quantities::known(model, height, design, workspace_radius, &constraints);
+    let phi_deg = |home: usize| found.orientations[home].phi_deg;
     let mut drive = None;
     if let Some(home) = home {
-        let positions = reporter.positions(grid);
-        quantities::add_of_region(
-            &mut quantities,
-            (model, design),
-            checker,
-            &found,
-            home,
-            &positions,
-            (grid, workers),
-        );
-        let home_phi_deg = found.orientations[home].phi_deg;
-        let frame = model.task_frame(design, workspace_radius, home_phi_deg);
+        quantities::add_of_region(&mut quantities, &reporter, home, grid);
+        let frame = model.task_frame(design, workspace_radius, phi_deg(home));
         drive = quantities::add_of_task(&mut quantities, model, design, &frame);
     }
     let (limits, violation_of_limits) = results_of_limits(model, design, &quantities);
-    violation += violation_of_limits;
-    let home_phi_deg = home.map(|home| found.orientations[home].phi_deg);
+    let home_phi_deg = home.map(phi_deg);
     let centre = model.settings().workspace.centre;
     let pose_at = |phi_deg: f64| Pose::new(centre.x, centre.y, phi_deg.to_radians());
     let reported = found.home.filter(|_| home.is_none() && worst.is_some());
+    let nearest = constraints[Constraint::Clearance as usize].pose;
+    let objectives = model.settings().objectives.iter();
     let evaluation = Evaluation {
         design: *design,
         home: home_phi_deg.map(pose_at),
         home_phi_deg,
-        reported_home: reported.map(|home| pose_at(found.orientations[home].phi_deg)),
-        nearest: constraints[Constraint::Clearance as usize]
-            .pose
-            .and_then(|pose| reporter.nearest(pose)),
+        reported_home: reported.map(|home| pose_at(phi_deg(home))),
+        nearest: nearest.and_then(|pose| reporter.nearest(pose)),
         drive: drive.filter(SelectedDrive::carries).map(|drive| drive.place),
         constraints,
-        objectives: model
-            .settings()
-            .objectives
-            .iter()
+        objectives: objectives
             .map(|objective| objective.minimised(quantities.get(objective.quantity)))
             .collect(),
         quantities,
         limits,
-        violation,
+        violation: violation + violation_of_limits,
     };
     (evaluation, found)
+}
+
+/// Searches the workspace of a design, and returns the worst margin, too, for a prescribed region.
+fn searched<L: Leg>(
+    model: &Model,
+    checker: &PoseChecker<L>,
+    design: &Design,
+    sampling: &WorkspaceSampling,
+    workers: &dyn Workers,
+) -> (RegularWorkspace, Option<f64>) {
+    let symmetric = model.is_symmetric_in(design, checker.bodies.stack().order);
+    if sampling.spec().region == Region::Largest {
+        return (search(checker, sampling, design.base_radius(), symmetric), None);
+    }
+    let objective = examined_objective(model, &checker.thresholds);
+    let (found, worst) = search_prescribed(checker, sampling, design.base_radius(), symmetric, objective, workers);
+    (found, Some(worst))
 }
 
 /// Returns the results of the limits that the study states, and by how much those of the design as a whole are violated. The search of

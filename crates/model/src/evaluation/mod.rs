@@ -13,6 +13,7 @@
 mod cycle;
 mod drives;
 mod evaluate;
+mod goals;
 mod mass;
 mod members;
 mod model;
@@ -34,12 +35,13 @@ pub use crate::pose::{
 };
 pub use crate::stiffness::Contribution;
 pub use cycle::ShortestCycle;
+pub use goals::{Bound, LimitResult, Objective, QuantityLimit};
 pub use members::MemberReport;
 pub use model::{GridChoice, Model};
 pub use over_workspace::{At, OverWorkspace};
 pub use parts::{CutBar, Part};
 pub use pose::{PoseEvaluation, PosedDesign, PosedDynamics, Unreachable};
-pub use quantity::{Bound, LimitResult, Objective, Quantity, QuantityLimit, QuantitySet, QuantityValues};
+pub use quantity::{Quantity, QuantitySet, QuantityValues};
 pub use settings::ModelSettings;
 pub use sizing::{SizingRanges, WorkspaceTarget};
 pub use task::{SelectedDrive, TaskFailure, TaskFault, TaskFigures, TaskOutcome, TaskSample, largest_of_legs};

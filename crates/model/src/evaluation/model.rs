@@ -184,7 +184,7 @@ impl Model {
             && design.working_mode().is_uniform()
             && self.settings.legs.geometry.is_three_fold()
             && self.settings.surroundings.is_empty()
-            && (self.settings.loads.are_three_fold() || !self.depends_on_loads())
+            && (self.settings.loads.are_three_fold() || !self.computes_any(PoseScalar::OF_LOADS))
             && (self.settings.dynamics.is_three_fold() || !self.computes_any(PoseScalar::OF_MOTION))
     }
 
@@ -229,11 +229,6 @@ impl Model {
             quantity: Quantity::Worst(scalar),
             bound: Bound::no_worse_than(threshold, scalar.entry().quantity.better),
         })
-    }
-
-    /// Returns whether an evaluation computes scalars that depend on the loads.
-    pub(super) fn depends_on_loads(&self) -> bool {
-        self.computes_any(PoseScalar::OF_LOADS)
     }
 
     /// Returns whether an evaluation computes any of some scalars.

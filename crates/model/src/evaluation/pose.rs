@@ -89,7 +89,7 @@ impl Model {
     pub fn posed(&self, design: &Design) -> PosedDesign {
         PosedDesign {
             design: *design,
-            checker: self.complete_checker(design),
+            checker: self.checker_of(design, ScalarSet::all()),
         }
     }
 }
@@ -158,9 +158,7 @@ impl PosedDesign {
             pose: *pose,
             legs: &checker.manipulator.legs,
             actuators: self.actuators(&posture),
-            limit_margin: posture.limit_margin,
-            determinant: Jacobian::new(&posture).determinant(),
-            joints: posture.legs.map(|leg| [leg.chain.a, leg.chain.b, leg.chain.c]),
+            posture,
         }))
     }
 
@@ -213,9 +211,7 @@ pub struct PosedDynamics<'a> {
     pose: Pose,
     legs: &'a [AnyLeg; LEGS],
     actuators: [f64; LEGS],
-    limit_margin: f64,
-    determinant: f64,
-    joints: [[DVec2; 3]; LEGS],
+    posture: Posture,
 }
 
 impl PosedDynamics<'_> {
@@ -226,17 +222,18 @@ impl PosedDynamics<'_> {
 
     /// Returns the distance to a joint limit or to the end of reach \[m\].
     pub fn limit_margin(&self) -> f64 {
-        self.limit_margin
+        self.posture.limit_margin
     }
 
     /// Returns `A_i`, `B_i` and `C_i` of all legs \[m\].
     pub fn joints(&self) -> impl Iterator<Item = DVec2> {
-        self.joints.into_iter().flatten()
+        let chains = self.posture.legs.iter().map(|leg| &leg.chain);
+        chains.flat_map(|chain| [chain.a, chain.b, chain.c])
     }
 
     /// Returns `det A` \[m\].
     pub fn determinant(&self) -> f64 {
-        self.determinant
+        Jacobian::new(&self.posture).determinant()
     }
 
     /// Returns what the actuators do during a motion.

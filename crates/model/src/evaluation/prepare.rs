@@ -59,13 +59,8 @@ impl Model {
         with_leg!(design.architecture(), L => Box::new(self.checker_of::<L>(design, set)))
     }
 
-    /// Prepares the design for all scalars, also for those that an evaluation does not compute.
-    pub(super) fn complete_checker<L: Leg>(&self, design: &Design) -> PoseChecker<L> {
-        self.checker_of(design, ScalarSet::all())
-    }
-
     /// Prepares the design for some scalars besides those that are limited.
-    fn checker_of<L: Leg>(&self, design: &Design, set: ScalarSet) -> PoseChecker<L> {
+    pub(super) fn checker_of<L: Leg>(&self, design: &Design, set: ScalarSet) -> PoseChecker<L> {
         let asks = |scalars: &[PoseScalar]| scalars.iter().any(|&scalar| set.contains(scalar));
         let is_limited = self.settings().thresholds.get(PoseScalar::Clearance).is_some();
         let bodies = match is_limited || set.contains(PoseScalar::Clearance) {
@@ -112,7 +107,7 @@ impl Model {
         stiffness: Option<&StiffnessModel>,
     ) -> Option<StrengthModel> {
         stiffness
-            .filter(|_| self.depends_on_loads())
+            .filter(|_| self.computes_any(PoseScalar::OF_LOADS))
             .map(|stiffness| self.strength(design, stiffness))
     }
 

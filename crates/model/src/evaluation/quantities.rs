@@ -1,7 +1,6 @@
 //! The values of the quantities of a design (docs/model.md, section 6.5).
 
-use glam::DVec2;
-
+use super::worst::{ConstraintSearch, padded};
 use super::{
     Constraint, ConstraintResult, Evaluation, LimitResult, Model, PoseScalar, Quantity, QuantityValues, SelectedDrive,
     TaskOutcome, largest_of_legs,
@@ -55,13 +54,18 @@ impl Model {
 /// Adds those quantities over the region of a design that the study asks for.
 pub(super) fn add_of_region<L: Leg>(
     values: &mut QuantityValues,
-    (model, design): (&Model, &Design),
-    checker: &PoseChecker<L>,
-    found: &RegularWorkspace,
+    search: &ConstraintSearch<'_, L>,
     home: usize,
-    positions: &Positions,
-    (grid, workers): (&Grid, &dyn Workers),
+    grid: &Grid,
 ) {
+    let &ConstraintSearch {
+        model,
+        checker,
+        design,
+        found,
+        workers,
+    } = search;
+    let positions = &search.positions(grid);
     let asked = |quantity: Quantity| model.settings().quantities.contains(quantity);
     if asked(Quantity::FrameFrequency) {
         let pose = pose_of_lowest_frequency(checker, found, home, positions);
@@ -84,9 +88,9 @@ pub(super) fn add_of_region<L: Leg>(
         checker.slow_limits()
     };
     let left: ScalarSet = set.iter().filter(|scalar| !searched.contains(*scalar)).collect();
-    let window = || found.orientation_grid.window(home);
-    let mut least = least_over(checker, found, left, window(), positions, workers);
-    for index in window() {
+    let window: Vec<usize> = found.orientation_grid.window(home).collect();
+    let mut least = least_over(checker, found, left, &window, positions, workers);
+    for index in window {
         for scalar in set.iter().filter(|scalar| searched.contains(*scalar)) {
             let least = &mut least[scalar as usize];
             *least = least.min(found.slow[index][scalar]);
@@ -103,7 +107,7 @@ fn least_over<L: Leg>(
     checker: &PoseChecker<L>,
     found: &RegularWorkspace,
     set: ScalarSet,
-    orientations: impl Iterator<Item = usize>,
+    orientations: &[usize],
     positions: &Positions,
     workers: &dyn Workers,
 ) -> [f64; PoseScalar::COUNT] {
@@ -112,12 +116,11 @@ fn least_over<L: Leg>(
         return least;
     }
     let indices = positions.indices();
-    let orientations: Vec<usize> = orientations.collect();
     let of_orientation = |index: &usize| {
         let arms = &found.orientations[*index].arms;
         checker.worst(set, arms, &positions.xs, &positions.ys, &indices)
     };
-    for minima in map(workers, &orientations, of_orientation) {
+    for minima in map(workers, orientations, of_orientation) {
         for (least, minimum) in least.iter_mut().zip(minima) {
             *least = least.min(minimum.value);
         }
@@ -138,24 +141,23 @@ pub(super) fn add_to_limits<L: Leg>(
         _ => None,
     };
     let set: ScalarSet = evaluation.limits.iter().filter_map(scalar_of).collect();
-    let mut positions = Positions::default();
-    let orientations: Vec<usize> = match found.home {
+    let (positions, orientations): (Positions, Vec<usize>) = match found.home {
         Some(home) if !found.samples.is_empty() => {
-            positions.extend(&found.samples);
-            found.orientation_grid.window(home).collect()
+            let window = found.orientation_grid.window(home);
+            (padded(found.samples.iter().copied()), window.collect())
         }
         _ => {
-            positions.push(model.settings().workspace.centre);
             let pose = evaluation.constraint(Constraint::Reach).pose;
             let is_reported = |index: &usize| {
                 let phi = found.orientations[*index].phi_deg.to_radians();
                 pose.is_some_and(|pose| (phi - pose.phi).abs() < 1e-9)
             };
-            (0..found.orientations.len()).find(is_reported).into_iter().collect()
+            let reported = (0..found.orientations.len()).find(is_reported);
+            let centre = model.settings().workspace.centre;
+            (padded([centre]), reported.into_iter().collect())
         }
     };
-    positions.pad();
-    let least = least_over(checker, found, set, orientations.into_iter(), &positions, &OneWorker);
+    let least = least_over(checker, found, set, &orientations, &positions, &OneWorker);
     for limit in &mut evaluation.limits {
         if let Some(scalar) = scalar_of(limit)
             && least[scalar as usize].is_finite()
@@ -254,19 +256,15 @@ fn dexterity_mean<L: Leg>(
 ) -> f64 {
     let spec = &model.settings().workspace;
     let spacing = checker.base_radius / grid.ray_steps() as f64;
-    let rings = (found.radius / spacing).ceil().clamp(1.0, MEAN_RINGS) as usize;
     let rings = if found.samples.is_empty() {
-        rings
+        (found.radius / spacing).ceil().clamp(1.0, MEAN_RINGS) as usize
     } else {
         MEAN_RINGS as usize
     };
     let weighted = spec
         .region
         .quadrature(spec.centre, found.radius, rings, &found.directions);
-    let places: Vec<DVec2> = weighted.iter().map(|(place, _)| *place).collect();
-    let mut positions = Positions::default();
-    positions.extend(&places);
-    positions.pad();
+    let positions = padded(weighted.iter().map(|(place, _)| *place));
     let mut columns = ValueColumns::default();
     let window: Vec<usize> = found.orientation_grid.window(home).collect();
     let (mut sum, mut total) = (0.0, 0.0);

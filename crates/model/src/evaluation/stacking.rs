@@ -5,7 +5,6 @@ use glam::DVec2;
 use super::{Model, PoseScalar};
 use crate::clearance::{Stack, Stacking};
 use crate::mechanism::{AnyLeg, Design, Manipulator, Posture};
-use crate::pose::PoseChecker;
 use crate::spatial::{Rotation, unit};
 
 /// Number of orientations over the full turn at which stacks are compared.
@@ -40,7 +39,9 @@ impl Model {
         let manipulator = Manipulator::<AnyLeg>::new(design, &self.settings().legs);
         let (orientations, half_window) = self.orientations_of_stacks();
         let positions = self.positions_of_stacks(design);
-        let checker = self.checker_without_clearance(design, &common);
+        // The clearance is compared, and scalars that depend on loads take long.
+        let mut checker = self.checker_in::<AnyLeg>(design, &common);
+        checker.drop_limits(|scalar| scalar == PoseScalar::Clearance || scalar.is_of_loads());
         let at_orientation = |phi: f64| -> Postures {
             let arms = manipulator.arms(&Rotation::new(phi));
             let sign = checker.feasible_sign(positions[0], &arms)?;
@@ -71,13 +72,6 @@ impl Model {
             }
         }
         best.1
-    }
-
-    /// Prepares a design without the limits of the clearance and of scalars that depend on loads, which take long.
-    fn checker_without_clearance(&self, design: &Design, stack: &Stack) -> PoseChecker<AnyLeg> {
-        let mut checker = self.checker_in::<AnyLeg>(design, stack);
-        checker.drop_limits(|scalar| scalar == PoseScalar::Clearance || scalar.is_of_loads());
-        checker
     }
 
     /// Returns the orientations \[rad\], and how many of them are within half the rotation range on each side of a home orientation;

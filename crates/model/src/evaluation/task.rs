@@ -288,27 +288,21 @@ impl Model {
 impl PosedDesign {
     /// Moves the design along a task in a workspace, and returns what came of it with all samples up to its end.
     pub fn follow(&self, task: &Task, frame: &TaskFrame) -> (TaskOutcome, Vec<TaskSample>) {
-        let Some(motion) = task.motion(frame) else {
-            let nothing = TaskOutcome {
-                motion: None,
-                result: None,
-                drive: None,
-            };
-            return (nothing, Vec::new());
-        };
-        let (result, samples) = match self.tally(&motion, frame) {
+        let motion = task.motion(frame);
+        let found = motion.as_ref().map(|motion| match self.tally(motion, frame) {
             Ok(tally) => {
-                let (figures, samples) = tally.finish(&motion);
+                let (figures, samples) = tally.finish(motion);
                 (Ok(figures), samples)
             }
             Err((failure, samples)) => (Err(failure), samples),
-        };
+        });
+        let (result, samples) = found.unzip();
         let outcome = TaskOutcome {
-            motion: Some(motion),
-            result: Some(result),
+            motion,
+            result,
             drive: None,
         };
-        (outcome, samples)
+        (outcome, samples.unwrap_or_default())
     }
 
     /// Moves the design along a motion in equal steps of time \[s\], and returns the samples.

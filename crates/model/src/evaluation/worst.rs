@@ -53,6 +53,16 @@ pub(super) fn positions_in_disc(
     std::iter::once(centre).chain(on_rings)
 }
 
+/// Returns positions in columns of the length that loops read.
+pub(super) fn padded(positions: impl IntoIterator<Item = DVec2>) -> Positions {
+    let mut columns = Positions::default();
+    for position in positions {
+        columns.push(position);
+    }
+    columns.pad();
+    columns
+}
+
 type ConstraintResults = [ConstraintResult; Constraint::COUNT];
 
 impl<L: Leg> ConstraintSearch<'_, L> {
@@ -142,23 +152,35 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     /// Returns the positions over which the smallest values are determined, padded.
     pub fn positions(&self, grid: &Grid) -> Positions {
         let found = self.found;
-        let mut disc = Positions::default();
         if !found.samples.is_empty() {
-            disc.extend(&found.samples);
-            disc.pad();
-            return disc;
+            return padded(found.samples.iter().copied());
         }
         let centre = self.model.settings().workspace.centre;
         let spacing = self.design.base_radius() / grid.ray_steps() as f64;
-        for position in positions_in_disc(centre, &found.directions, found.radius, spacing) {
-            disc.push(position);
+        padded(positions_in_disc(centre, &found.directions, found.radius, spacing))
+    }
+
+    /// Returns the reports of the constraints, the violation, and the home orientation of a design that has a workspace; `worst` is the worst
+    /// margin over a region, if the study prescribes one.
+    pub fn report(&self, worst: Option<f64>, grid: &Grid) -> (ConstraintResults, f64, Option<usize>) {
+        let assembly = &self.checker.assembly;
+        match (self.found.home, worst) {
+            (Some(home), None) if assembly.value >= assembly.threshold => {
+                (self.over_workspace(home, grid), 0.0, Some(home))
+            }
+            (Some(home), Some(worst)) => {
+                let (constraints, violation) = self.over_region(home, worst);
+                (constraints, violation, Some(home).filter(|_| violation == 0.0))
+            }
+            _ => {
+                let (constraints, violation) = self.at_best_centre();
+                (constraints, violation, None)
+            }
         }
-        disc.pad();
-        disc
     }
 
     /// Returns the smallest values over the regular workspace. The constraints that fail just beyond it are active.
-    pub fn over_workspace(&self, home: usize, grid: &Grid) -> ConstraintResults {
+    fn over_workspace(&self, home: usize, grid: &Grid) -> ConstraintResults {
         let mut reports = self.smallest_over(home, &self.positions(grid));
         self.mark_beyond(&mut reports, self.found.home_sign);
         reports
@@ -166,11 +188,8 @@ impl<L: Leg> ConstraintSearch<'_, L> {
 
     /// Returns the smallest values over a prescribed region whose worst margin is `worst`, and the violation. The constraints
     /// with the worst margin are active.
-    pub fn over_region(&self, home: usize, worst: f64) -> (ConstraintResults, f64) {
-        let mut positions = Positions::default();
-        positions.extend(&self.found.samples);
-        positions.pad();
-        let mut reports = self.smallest_over(home, &positions);
+    fn over_region(&self, home: usize, worst: f64) -> (ConstraintResults, f64) {
+        let mut reports = self.smallest_over(home, &padded(self.found.samples.iter().copied()));
         let near = worst + ACTIVE;
         for report in &mut reports {
             report.active |= report.required && report.pose.is_some() && report.margin <= near;
@@ -224,17 +243,25 @@ impl<L: Leg> ConstraintSearch<'_, L> {
 
     /// Marks as active the constraints that fail just beyond the workspace radius, in the orientations that limit it.
     fn mark_beyond(&self, reports: &mut ConstraintResults, sign: f64) {
+        self.look_beyond(|_, _, values| self.mark_failing(reports, values, sign));
+    }
+
+    /// Shows the poses just beyond the limits that the search has recorded: the place of the orientation, the position, and the values.
+    fn look_beyond(&self, mut show: impl FnMut(usize, DVec2, &Result<PoseValues, f64>)) {
+        let centre = self.model.settings().workspace.centre;
         let mut values = ValueColumns::default();
         for &(index, beyond) in &self.found.limits {
-            let mut rim = Positions::default();
-            for direction in &self.found.directions {
-                rim.push(self.model.settings().workspace.centre + *direction * beyond);
-            }
-            rim.pad();
+            let rim = || {
+                self.found
+                    .directions
+                    .iter()
+                    .map(|direction| centre + *direction * beyond)
+            };
+            let columns = padded(rim());
             let arms = &self.found.orientations[index].arms;
-            self.checker.at_positions(arms, &rim.xs, &rim.ys, &mut values);
-            for at in 0..self.found.directions.len() {
-                self.mark_failing(reports, &values.get(at), sign);
+            self.checker.at_positions(arms, &columns.xs, &columns.ys, &mut values);
+            for (at, position) in rim().enumerate() {
+                show(index, position, &values.get(at));
             }
         }
     }
@@ -245,7 +272,7 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     /// The best orientation is the one with the smallest shortfall at the centre, the best window the one with the
     /// smallest mean shortfall. The constraints that fail at a centre pose of the best window are active; if there are
     /// none, those that fail just beyond the limits that the search recorded.
-    pub fn at_best_centre(&self) -> (ConstraintResults, f64) {
+    fn at_best_centre(&self) -> (ConstraintResults, f64) {
         let found = self.found;
         let centre = self.model.settings().workspace.centre;
         let shortfalls: Vec<(f64, f64)> = (0..found.orientations.len())
@@ -298,35 +325,14 @@ impl<L: Leg> ConstraintSearch<'_, L> {
     /// feasible: the centres of the best window, and what lies just beyond them.
     fn visit_window(&self, reports: &mut ConstraintResults, home: usize, sign: f64) {
         let centre = self.model.settings().workspace.centre;
-        let pose = |position: DVec2, index: usize| {
-            Pose::new(
-                position.x,
-                position.y,
-                self.found.orientations[index].phi_deg.to_radians(),
-            )
+        let pose = |position: DVec2, index: usize| Pose {
+            position,
+            phi: self.found.orientations[index].phi_deg.to_radians(),
         };
         for index in self.found.orientation_grid.window(home) {
             self.visit(reports, &self.found.centres.get(index), || pose(centre, index), sign);
         }
-        let mut values = ValueColumns::default();
-        for &(index, beyond) in &self.found.limits {
-            let directions = &self.found.directions;
-            let mut rim = Positions::default();
-            for direction in directions {
-                rim.push(centre + *direction * beyond);
-            }
-            rim.pad();
-            self.checker
-                .at_positions(&self.found.orientations[index].arms, &rim.xs, &rim.ys, &mut values);
-            for (at, direction) in directions.iter().enumerate() {
-                self.visit(
-                    reports,
-                    &values.get(at),
-                    || pose(centre + *direction * beyond, index),
-                    sign,
-                );
-            }
-        }
+        self.look_beyond(|index, position, values| self.visit(reports, values, || pose(position, index), sign));
         // At the very end of a leg's reach the distance to the limit is 0, though the leg does not reach the pose.
         let reach = &mut reports[Constraint::Reach as usize];
         if reach.active && reach.margin == 0.0 {

@@ -1,7 +1,7 @@
 //! Constraints g1 … g6, the sign rule, and g7, which a study may require: their thresholds and margins (docs/model.md, section 6).
 
 use super::entry::Better;
-use super::scalars::{Constraint, MarginUnit, PoseScalar};
+use super::scalars::{CONSTRAINTS, Constraint, MarginUnit, PoseScalar};
 use super::values::{PoseValues, Thresholds, is_within};
 use crate::mechanism::{Assembly, Design};
 
@@ -26,6 +26,42 @@ impl PoseScalar {
 }
 
 impl Constraint {
+    /// Number of constraints.
+    pub const COUNT: usize = CONSTRAINTS.len();
+
+    /// All constraints, beginning with g1.
+    pub const ALL: [Constraint; Self::COUNT] = {
+        let mut all = [Constraint::Assembly; Self::COUNT];
+        let mut place = 0;
+        while place < Self::COUNT {
+            all[place] = CONSTRAINTS[place].0;
+            place += 1;
+        }
+        all
+    };
+
+    /// Returns the short id, as in JSON and CSV.
+    pub fn id(self) -> &'static str {
+        CONSTRAINTS[self as usize].1
+    }
+
+    /// Returns the name, as in JSON.
+    pub fn name(self) -> &'static str {
+        CONSTRAINTS[self as usize].2
+    }
+
+    /// Returns the scalar of a pose that it bounds; `None` for g1, which applies to the design as a whole.
+    pub fn scalar(self) -> Option<PoseScalar> {
+        CONSTRAINTS[self as usize].3
+    }
+
+    /// Returns the constraint that bounds a scalar of a pose, if it has an id of its own.
+    pub fn of_scalar(scalar: PoseScalar) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|constraint| constraint.scalar() == Some(scalar))
+    }
+
     /// Returns which values are better.
     pub fn better(self) -> Better {
         self.scalar()

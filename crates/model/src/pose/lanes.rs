@@ -120,9 +120,8 @@ impl<L: Leg> PoseChecker<L> {
         distals: &[DistalLanes<V>; LEGS],
         limit: V,
     ) -> V {
-        let checker = self;
         limit.call_apart(ClearanceUpTo {
-            checker,
+            checker: self,
             position,
             arms,
             distals,
@@ -142,15 +141,11 @@ impl<L: Leg> PoseChecker<L> {
         let legs = self.leg_lanes(position, arms);
         let jacobian = Jacobian::of_lanes(&legs);
         let [k_xy, k_z, k_phi_z] = match &self.stiffness {
-            Some(model) if L::MAY_BE_ON_RAILS && model.is_on_bending_rails() => {
-                let arms = *arms;
-                let checker = self;
-                like.call_apart(StiffnessOnRails {
-                    checker,
-                    position,
-                    arms,
-                })
-            }
+            Some(model) if L::MAY_BE_ON_RAILS && model.is_on_bending_rails() => like.call_apart(StiffnessOnRails {
+                checker: self,
+                position,
+                arms: *arms,
+            }),
             Some(model) => model.stiffness_value_lanes(self.definition, &legs, arms, &NoSliders, &jacobian),
             None => [like.splat(0.0); 3],
         };
@@ -171,21 +166,6 @@ impl<L: Leg> PoseChecker<L> {
         (values, [legs[0].distal(), legs[1].distal(), legs[2].distal()])
     }
 
-    /// Does the same as [`PoseChecker::core_lanes`] in a function of its own.
-    #[inline(always)]
-    fn core_lanes_apart<V: Real>(
-        &self,
-        position: Planar<V>,
-        arms: &[Planar<V>; LEGS],
-    ) -> (CoreLanes<V>, [DistalLanes<V>; LEGS]) {
-        let checker = self;
-        position.x.call_apart(Core {
-            checker,
-            position,
-            arms,
-        })
-    }
-
     /// Returns the limit of a scalar in as many lanes as `like` has.
     #[inline(always)]
     fn bound_lanes<V: Real>(&self, like: V, scalar: PoseScalar) -> V {
@@ -204,18 +184,21 @@ impl<L: Leg> PoseChecker<L> {
         set: ScalarSet,
     ) -> V::Mask {
         let (values, distals) = if ALL {
-            self.core_lanes_apart(position, arms)
+            position.x.call_apart(Core {
+                checker: self,
+                position,
+                arms,
+            })
         } else {
             self.core_lanes(position, arms)
         };
         let scalars = &values.scalars;
-        let good = values.reachable
+        let mut good = values.reachable
             & (scalars[PoseScalar::Determinant] * sign).exceeds(sign.splat(0.0))
             & scalars[PoseScalar::Dexterity].at_least(self.bound_lanes(sign, PoseScalar::Dexterity))
             & scalars[PoseScalar::StiffnessXy].at_least(self.bound_lanes(sign, PoseScalar::StiffnessXy))
             & scalars[PoseScalar::StiffnessPhiZ].at_least(self.bound_lanes(sign, PoseScalar::StiffnessPhiZ))
             & scalars[PoseScalar::StiffnessZ].at_least(self.bound_lanes(sign, PoseScalar::StiffnessZ));
-        let mut good = good;
         if ALL && V::any(good) {
             let mut scalars = PoseScalars::of_core(scalars);
             self.fill_on_demand(set.without_motion(), position, arms, &mut scalars);

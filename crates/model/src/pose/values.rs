@@ -21,9 +21,7 @@ impl<T> PoseScalars<T> {
     pub fn iter(&self) -> impl Iterator<Item = (PoseScalar, &T)> {
         PoseScalar::ALL.iter().copied().zip(&self.0)
     }
-}
 
-impl<T> PoseScalars<T> {
     /// Borrows the values.
     #[inline(always)]
     pub(crate) fn each_mut(&mut self) -> PoseScalars<&mut T> {
@@ -42,6 +40,14 @@ impl<T: Copy> PoseScalars<T> {
     #[inline(always)]
     pub const fn splat(value: T) -> Self {
         Self([value; PoseScalar::COUNT])
+    }
+
+    /// Creates the values of all scalars from those that are known.
+    #[inline(always)]
+    pub(crate) fn of_core(core: &CoreScalars<T>) -> Self {
+        let mut all = Self::splat(core.0[0]);
+        all.0[..core.0.len()].copy_from_slice(&core.0);
+        all
     }
 }
 
@@ -87,16 +93,6 @@ impl<T> IndexMut<PoseScalar> for CoreScalars<T> {
     #[inline(always)]
     fn index_mut(&mut self, scalar: PoseScalar) -> &mut T {
         &mut self.0[scalar as usize]
-    }
-}
-
-impl<T: Copy> PoseScalars<T> {
-    /// Creates the values of all scalars from those that are known.
-    #[inline(always)]
-    pub(crate) fn of_core(core: &CoreScalars<T>) -> Self {
-        let mut all = Self::splat(core.0[0]);
-        all.0[..core.0.len()].copy_from_slice(&core.0);
-        all
     }
 }
 

@@ -80,19 +80,17 @@ impl StiffnessModel {
         let mut stiffness = [Matrix3::zeros(); LEGS];
         let mut parts = [[Matrix3::zeros(); 3]; LEGS];
         for index in 0..LEGS {
-            let bars = self.bars(&posture.legs[index]);
-            for (part, bar) in parts[index].iter_mut().zip(bars) {
-                let mut s = [0.0; 6];
+            let mut compliances = [[0.0; 6]; 3];
+            for (s, bar) in compliances.iter_mut().zip(self.bars(&posture.legs[index])) {
                 if let Some(bar) = bar {
-                    bar.add_to(&mut s);
+                    bar.add_to(s);
                 }
-                *part = symmetric(&s);
             }
             if let Some(rail) = self.loaded_rail(&posture.legs[index]) {
-                let mut s = [0.0; 6];
-                rail.add_to(&mut s);
-                parts[index][2] = symmetric(&s);
+                compliances[2] = [0.0; 6];
+                rail.add_to(&mut compliances[2]);
             }
+            parts[index] = compliances.map(|s| symmetric(&s));
             stiffness[index] = parts[index].iter().sum::<Matrix3<f64>>().try_inverse()?;
         }
         let compliance = stiffness.iter().sum::<Matrix3<f64>>().try_inverse()?;

@@ -190,24 +190,13 @@ mod tests {
         for (index, pair) in nodes.windows(2).enumerate() {
             let l = pair[1] - pair[0];
             let rigidity = 1.0 / SECTION.bending;
-            let element = nalgebra::Matrix4::new(
-                12.0,
-                6.0 * l,
-                -12.0,
-                6.0 * l, //
-                6.0 * l,
-                4.0 * l * l,
-                -6.0 * l,
-                2.0 * l * l, //
-                -12.0,
-                -6.0 * l,
-                12.0,
-                -6.0 * l, //
-                6.0 * l,
-                2.0 * l * l,
-                -6.0 * l,
-                4.0 * l * l,
-            ) * (rigidity / (l * l * l));
+            let rows = [
+                [12.0, 6.0 * l, -12.0, 6.0 * l],
+                [6.0 * l, 4.0 * l * l, -6.0 * l, 2.0 * l * l],
+                [-12.0, -6.0 * l, 12.0, -6.0 * l],
+                [6.0 * l, 2.0 * l * l, -6.0 * l, 4.0 * l * l],
+            ];
+            let element = nalgebra::Matrix4::from(rows) * (rigidity / (l * l * l));
             let mut block = stiffness.fixed_view_mut::<4, 4>(2 * index, 2 * index);
             block += element;
         }

@@ -2,8 +2,9 @@
 //! sections 14.1 and 14.4).
 
 use super::LegLoadPath;
+use super::bars::{BarLanes, Span};
 use crate::lanes::{Planar, Real};
-use crate::mechanism::{Architecture, Design, Geometry, JointKind, JointPoint, LegSettings, MemberKind};
+use crate::mechanism::{Design, JointKind, JointPoint, LegSettings, MemberKind};
 use crate::spatial::LEGS;
 use crate::stiffness::BarCompliance;
 
@@ -86,60 +87,9 @@ pub(crate) struct LegPath {
 
 impl LegPath {
     /// Describes leg `index` of a design, whose bars have the given masses per length.
-    pub fn new(design: &Design, settings: &LegSettings, index: usize, [of_leg, of_platform]: [f64; 2]) -> Self {
-        let architecture: Architecture = design.architecture();
+    pub fn new(design: &Design, settings: &LegSettings, index: usize, densities: [f64; 2]) -> Self {
+        let architecture = design.architecture();
         let chain = architecture.chain();
-        let geometry: &Geometry = &settings.geometry;
-        let bar = |length: f64, density: f64| {
-            [
-                Some(Piece {
-                    end: End::Base,
-                    from: 0.0,
-                    to: length,
-                    density,
-                    is_within: true,
-                }),
-                None,
-            ]
-        };
-        // The mass of a guide is that of its full length, spread over its travel.
-        let guide = |end: End, length: f64| {
-            let [from, to] = geometry.travel(length);
-            let piece = Piece {
-                end,
-                from,
-                to,
-                density: of_leg * length / (to - from),
-                is_within: false,
-            };
-            [Some(piece), None]
-        };
-        let (proximal_length, link_length) = (design.proximal_length(), design.link_length());
-        let tube = settings.tube_length(link_length);
-        let proximal = match chain.proximal {
-            Some(MemberKind::TurningGuide) => guide(End::Base, proximal_length),
-            _ if chain.has_proximal_bar => bar(proximal_length, of_leg),
-            _ => [None; 2],
-        };
-        let distal = match chain.distal {
-            MemberKind::TelescopicLeg => {
-                let piece = |end: End, to: f64| {
-                    Some(Piece {
-                        end,
-                        from: 0.0,
-                        to,
-                        density: of_leg,
-                        is_within: to <= settings.telescopic_shortest * link_length,
-                    })
-                };
-                [piece(End::Base, tube), piece(End::Platform, link_length - tube)]
-            }
-            // The guide belongs to the platform if the last joint slides, otherwise to the slider.
-            MemberKind::Guide if chain.joints[2] == JointKind::Prismatic => guide(End::Platform, link_length),
-            MemberKind::Guide => guide(End::Base, link_length),
-            _ => bar(link_length, of_leg),
-        };
-        let arm = geometry.platform_joint(index, design.platform_radius()).length();
         Self {
             first: if chain.has_proximal_bar { 0 } else { DISTAL },
             joints: [0, 1, 2].map(|place| PathJoint {
@@ -158,9 +108,9 @@ impl LegPath {
                 chain.distal,
                 MemberKind::PlatformBar,
             ],
-            pieces: [proximal, distal, bar(arm, of_platform)],
-            tube,
-            proximal_length,
+            pieces: pieces(design, settings, index, densities),
+            tube: settings.tube_length(design.link_length()),
+            proximal_length: design.proximal_length(),
         }
     }
 
@@ -279,6 +229,52 @@ impl LegPath {
     }
 }
 
+/// Returns where the mass of each bar lies, of bars with the given masses per length.
+fn pieces(
+    design: &Design,
+    settings: &LegSettings,
+    index: usize,
+    [of_leg, of_platform]: [f64; 2],
+) -> [[Option<Piece>; 2]; BARS] {
+    let chain = design.architecture().chain();
+    let geometry = &settings.geometry;
+    let piece = |end: End, [from, to]: [f64; 2], density: f64, is_within: bool| {
+        Some(Piece {
+            end,
+            from,
+            to,
+            density,
+            is_within,
+        })
+    };
+    let bar = |length: f64, density: f64| [piece(End::Base, [0.0, length], density, true), None];
+    // The mass of a guide is that of its full length, spread over its travel.
+    let guide = |end: End, length: f64| {
+        let [from, to] = geometry.travel(length);
+        [piece(end, [from, to], of_leg * length / (to - from), false), None]
+    };
+    let (proximal_length, link_length) = (design.proximal_length(), design.link_length());
+    let tube = settings.tube_length(link_length);
+    let proximal = match chain.proximal {
+        Some(MemberKind::TurningGuide) => guide(End::Base, proximal_length),
+        _ if chain.has_proximal_bar => bar(proximal_length, of_leg),
+        _ => [None; 2],
+    };
+    let distal = match chain.distal {
+        MemberKind::TelescopicLeg => {
+            let is_within = |to: f64| to <= settings.telescopic_shortest * link_length;
+            let own = |end: End, to: f64| piece(end, [0.0, to], of_leg, is_within(to));
+            [own(End::Base, tube), own(End::Platform, link_length - tube)]
+        }
+        // The guide belongs to the platform if the last joint slides, otherwise to the slider.
+        MemberKind::Guide if chain.joints[2] == JointKind::Prismatic => guide(End::Platform, link_length),
+        MemberKind::Guide => guide(End::Base, link_length),
+        _ => bar(link_length, of_leg),
+    };
+    let arm = geometry.platform_joint(index, design.platform_radius()).length();
+    [proximal, distal, bar(arm, of_platform)]
+}
+
 /// Returns a vector of the distal axes in base axes.
 #[inline(always)]
 fn into_base<V: Real>(tangent: Planar<V>, vector: Planar<V>) -> Planar<V> {
@@ -310,43 +306,6 @@ fn span<V: Real>(piece: &Option<Piece>, sign: V, length: V) -> Span<V> {
     }
 }
 
-/// Part of uniform mass along a bar at several poses at once.
-#[derive(Clone, Copy)]
-pub(crate) struct Span<V> {
-    /// Distances from the end of the bar at the base \[m\].
-    pub from: V,
-    pub to: V,
-    /// Mass per length \[kg/m\].
-    pub density: f64,
-    /// Whether it lies between the ends of the bar at all poses that the leg reaches.
-    pub is_within: bool,
-}
-
-impl<V: Real> Span<V> {
-    /// Returns the mass from a distance on, and the distance of its middle.
-    #[inline(always)]
-    fn mass_from(&self, distance: V) -> (V, V) {
-        let from = self.from.larger(distance);
-        let length = (self.to - from).larger(from.splat(0.0));
-        let mass = length * from.splat(self.density);
-        (mass, from + length * from.splat(0.5))
-    }
-}
-
-/// A bar at several poses at once, relative to `P`.
-#[derive(Clone, Copy)]
-pub(crate) struct BarLanes<V> {
-    /// End at the base \[m\].
-    pub base: Planar<V>,
-    /// Unit vector towards the platform.
-    pub axis: Planar<V>,
-    /// Length \[m\].
-    pub length: V,
-    pub pieces: [Span<V>; 2],
-    /// Whether one piece covers the bar.
-    pub is_uniform: bool,
-}
-
 /// A leg at several poses at once, relative to `P`.
 #[derive(Clone, Copy)]
 pub(crate) struct PathLanes<V> {
@@ -355,84 +314,4 @@ pub(crate) struct PathLanes<V> {
     pub joints: [Planar<V>; LEGS],
     /// Directions of the prismatic joints.
     pub slides: [Planar<V>; LEGS],
-}
-
-/// Mass beyond a place, towards the platform, and its first moment about `P`.
-#[derive(Clone, Copy)]
-pub(crate) struct Beyond<V> {
-    pub mass: V,
-    pub moment: Planar<V>,
-}
-
-impl<V: Real> Beyond<V> {
-    #[inline(always)]
-    pub fn nothing(like: V) -> Self {
-        let zero = like.splat(0.0);
-        Self {
-            mass: zero,
-            moment: Planar::new(zero, zero),
-        }
-    }
-
-    #[inline(always)]
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            mass: self.mass + other.mass,
-            moment: self.moment.plus(other.moment),
-        }
-    }
-}
-
-impl<V: Real> BarLanes<V> {
-    /// Returns the place at a distance from the end at the base.
-    #[inline(always)]
-    pub fn place(&self, distance: V) -> Planar<V> {
-        self.base.plus(self.axis.scaled(distance))
-    }
-
-    /// Returns a mass whose middle is at a distance from the end at the base.
-    #[inline(always)]
-    fn at(&self, (mass, middle): (V, V)) -> Beyond<V> {
-        Beyond {
-            mass,
-            moment: self.place(middle).scaled(mass),
-        }
-    }
-
-    /// Returns the mass of a piece.
-    #[inline(always)]
-    pub fn mass_of_piece(&self, piece: usize) -> Beyond<V> {
-        let piece = &self.pieces[piece];
-        self.at(piece.mass_from(piece.from))
-    }
-
-    /// Returns the mass on the line of the bar.
-    #[inline(always)]
-    pub fn mass(&self) -> Beyond<V> {
-        self.mass_of_piece(0).and(self.mass_of_piece(1))
-    }
-
-    /// Returns the mass on the line of the bar from a distance on, and its first moment about that place along the bar.
-    #[inline(always)]
-    pub fn mass_on(&self, distance: V) -> (V, V) {
-        let [first, second] = &self.pieces;
-        let (mass, middle) = first.mass_from(distance);
-        let moment = mass * (middle - distance);
-        if second.density == 0.0 {
-            return (mass, moment);
-        }
-        let (more, middle) = second.mass_from(distance);
-        (mass + more, moment + more * (middle - distance))
-    }
-
-    /// Returns the mass on the line of the bar from a distance on.
-    #[inline(always)]
-    pub fn mass_from(&self, distance: V) -> Beyond<V> {
-        let [first, second] = &self.pieces;
-        let mass = self.at(first.mass_from(distance));
-        if second.density == 0.0 {
-            return mass;
-        }
-        mass.and(self.at(second.mass_from(distance)))
-    }
 }

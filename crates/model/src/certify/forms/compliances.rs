@@ -60,13 +60,13 @@ impl Compliances {
     pub fn new(model: &Model, design: &Design) -> Result<Self, CertifyError> {
         let exactly = Interval::exactly;
         let one = exactly(1.0);
-        let material = &model.settings().material;
+        let settings = model.settings();
+        let material = &settings.material;
         let (radius, link) = (exactly(design.platform_radius()), exactly(design.link_length()));
         let proximal = exactly(design.proximal_length());
-        let sections = &model.settings().sections;
-        let leg = per_length(material, &sections.legs, design.leg_bar_radius());
-        let platform = per_length(material, &sections.platform, design.platform_bar_radius());
-        let actuator = one / exactly(model.settings().actuators.of(design.architecture().actuator()));
+        let leg = per_length(material, &settings.sections.legs, design.leg_bar_radius());
+        let platform = per_length(material, &settings.sections.platform, design.platform_bar_radius());
+        let actuator = one / exactly(settings.actuators.of(design.architecture().actuator()));
         // The transmission of a revolute actuator is a lever.
         let actuator = match design.architecture().actuator() {
             JointKind::Prismatic => actuator,
@@ -79,7 +79,8 @@ impl Compliances {
         if !(unit.lower() > 0.0 && unit.upper() < 1e60 && bend.lower() > 0.0 && bend.upper() < 1e60) {
             return Err(CertifyError::Degenerate);
         }
-        let limit = |scalar: PoseScalar| exactly(model.settings().thresholds.get(scalar).unwrap_or(0.0));
+        let limit = |scalar: PoseScalar| exactly(settings.thresholds.get(scalar).unwrap_or(0.0));
+        let arrangement = settings.legs.geometry.arrangement();
         Ok(Self {
             unit,
             bending_unit: bend,
@@ -88,29 +89,22 @@ impl Compliances {
             leg_bending: link * link.square() * leg[1] / exactly(3.0) / unit,
             proximal_axial: link.square() / proximal * leg[0] / unit,
             proximal_bending: proximal * link.square() * leg[1] / exactly(3.0) / unit,
-            platform: model
-                .settings()
-                .legs
-                .geometry
-                .arrangement()
-                .platform_radii
-                .map(|multiple| {
-                    let multiple = exactly(multiple);
-                    let length = radius * multiple;
-                    PlatformCompliances {
-                        axial: radius / multiple * platform[0] / unit,
-                        bending: length * link.square() * platform[1] / exactly(3.0) / unit,
-                        base: length * platform[0] / unit,
-                        moment: (length * radius.square() * platform[1] / exactly(3.0)
-                            - radius / multiple * platform[0])
-                            / unit,
-                        vertical: [length * platform[1] / bend, length * platform[2] / bend],
-                        radius: length / link,
-                        per_multiple: one / multiple,
-                    }
-                }),
+            platform: arrangement.platform_radii.map(|multiple| {
+                let multiple = exactly(multiple);
+                let length = radius * multiple;
+                let bending = length * radius.square() * platform[1] / exactly(3.0);
+                PlatformCompliances {
+                    axial: radius / multiple * platform[0] / unit,
+                    bending: length * link.square() * platform[1] / exactly(3.0) / unit,
+                    base: length * platform[0] / unit,
+                    moment: (bending - radius / multiple * platform[0]) / unit,
+                    vertical: [length * platform[1] / bend, length * platform[2] / bend],
+                    radius: length / link,
+                    per_multiple: one / multiple,
+                }
+            }),
             in_plane: limit(PoseScalar::StiffnessXy) * unit,
-            yielding: exactly(model.settings().in_plane_force) / limit(PoseScalar::Displacement) * unit,
+            yielding: exactly(settings.in_plane_force) / limit(PoseScalar::Displacement) * unit,
             rotation: limit(PoseScalar::StiffnessPhiZ) * unit / radius.square(),
             vertical: limit(PoseScalar::StiffnessZ) * bend * link.square(),
             leg: [link * leg[1] / bend, link * leg[2] / bend],

@@ -8,6 +8,7 @@ mod bars;
 mod clearance;
 mod compliances;
 mod motion;
+mod out_of_plane;
 mod plain;
 mod rails;
 mod reach;
@@ -18,9 +19,8 @@ mod travel;
 use clearance::{MemberBoxes, Separations};
 use compliances::Compliances;
 use motion::MotionForms;
-use plain::checker_of_slow_limits;
 use reach::ReachForms;
-use strength::{LoadForms, StrengthForms};
+use strength::StrengthForms;
 pub(super) use travel::{Travel, TravelForms};
 
 use super::CertifyError;
@@ -165,8 +165,6 @@ pub(super) struct Forms<'a> {
     reach: Option<ReachForms>,
     /// What the limits of the strength need, if there are any.
     strength: Option<StrengthForms>,
-    /// What the enclosed numbers of loads and motions begin with.
-    loads: LoadForms,
     /// What the limits of a motion need, if there are any.
     motion: Option<MotionForms>,
     /// The design in plain numbers, if there are limits that take long.
@@ -178,6 +176,7 @@ impl<'a> Forms<'a> {
     pub fn new(model: &'a Model, design: &'a Design) -> Result<Self, CertifyError> {
         let frames = [0, 1, 2].map(|index| LegFrameEnclosure::new(design, &model.settings().legs.geometry, index));
         let (strength, motion) = (StrengthForms::new(model, design), MotionForms::new(model, design));
+        let slow = model.thresholds_of(design).that_take_long();
         Ok(Self {
             sign: 1.0,
             design,
@@ -186,8 +185,7 @@ impl<'a> Forms<'a> {
             to_length: Interval::exactly(design.platform_radius()) / characteristic_length(model, design, &frames),
             separations: Separations::new(model, design),
             reach: ReachForms::new(model, design),
-            loads: LoadForms::new(design),
-            slow: checker_of_slow_limits(model, design),
+            slow: (!slow.is_empty()).then(|| model.checker(design)),
             strength,
             motion,
             frames,
@@ -243,15 +241,11 @@ impl<'a> Forms<'a> {
             if let Some(separations) = &self.separations
                 && found.needs(PoseScalar::Clearance)
             {
-                separate(
-                    separations,
-                    &separations.lay_out(self.design, &self.frames, pose, &legs),
-                    &mut found,
-                );
+                let boxes = separations.lay_out(self.design, &self.frames, pose, &legs);
+                separate(separations, &boxes, &mut found);
             }
-            let has_values = found.iter().all(|(_, value)| !value.range()[0].is_nan());
-            found.is_complete = has_values;
-            if has_values {
+            found.is_complete = found.values.iter().all(|(_, value)| !value.range()[0].is_nan());
+            if found.is_complete {
                 self.enclose_reach(pose, &legs, &mut found);
                 self.enclose_strength(&legs, (detail, &mut found));
                 self.enclose_motion(pose, &legs, &mut found);
@@ -340,6 +334,15 @@ fn others(i: usize) -> [usize; 2] {
 fn turn(legs: &[LegEnclosure; LEGS], i: usize) -> TaylorModel {
     let [j, k] = others(i);
     cross(legs[j].u, legs[k].u)
+}
+
+fn sum_of_legs(term: impl Fn(usize) -> TaylorModel) -> TaylorModel {
+    term(0) + term(1) + term(2)
+}
+
+/// Encloses `det A` as a multiple of `r`.
+fn determinant(legs: &[LegEnclosure; LEGS]) -> TaylorModel {
+    sum_of_legs(|i| legs[i].moment * turn(legs, i))
 }
 
 /// Encloses the characteristic length \[m\].

@@ -51,12 +51,8 @@ impl Forms<'_> {
             if !self.model.has(self.design, scalar) {
                 found.push(scalar, TaylorModel::exactly(-1.0));
             } else if value == MotionValue::NaturalFrequency {
-                for form in motion
-                    .model
-                    .enclose_stiffness_above(&inputs, &legs, limit)
-                    .into_iter()
-                    .flat_map(minors)
-                {
+                let blocks = motion.model.enclose_stiffness_above(&inputs, &legs, limit);
+                for form in blocks.into_iter().flat_map(minors) {
                     found.push(scalar, form);
                 }
             } else {

@@ -4,17 +4,10 @@ use glam::DVec2;
 
 use super::{Forms, ProvedForms};
 use crate::enclosure::PoseEnclosure;
-use crate::evaluation::{Model, PoseScalar};
+use crate::evaluation::PoseScalar;
 use crate::lanes::Planar;
-use crate::mechanism::{AnyLeg, Design};
-use crate::pose::{PoseChecker, PoseScalars, ScalarSet, is_within};
+use crate::pose::{PoseScalars, ScalarSet, is_within};
 use crate::spatial::Rotation;
-
-/// Prepares a design whose limits that take long are examined in plain numbers; `None` if the study has no such limit.
-pub(super) fn checker_of_slow_limits(model: &Model, design: &Design) -> Option<PoseChecker<AnyLeg>> {
-    let slow = model.thresholds_of(design).that_take_long();
-    (!slow.is_empty()).then(|| model.checker(design))
-}
 
 impl Forms<'_> {
     /// Adds the limits that take long and that a pose, a box without width, keeps in plain numbers: no enclosure shows that it violates them,

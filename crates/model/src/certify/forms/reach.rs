@@ -3,10 +3,10 @@
 //! Where no limit is stated, the forms of the reach tell only its sign. The distance itself is that of the evaluation, whose formulas
 //! run on enclosed numbers.
 
+use super::strength::planar;
 use super::{Enclosures, Forms};
-use crate::enclosure::{EnclosedNumber, Interval, PoseEnclosure};
+use crate::enclosure::{Interval, PoseEnclosure};
 use crate::evaluation::{Model, PoseScalar};
-use crate::lanes::Planar;
 use crate::mechanism::{AnyLeg, Design, Leg, LegEnclosure, Manipulator};
 use crate::spatial::LEGS;
 
@@ -45,12 +45,10 @@ impl Forms<'_> {
     /// Encloses the distance to the joint limits less its limit.
     pub(super) fn enclose_reach(&self, pose: &PoseEnclosure, legs: &[LegEnclosure; LEGS], found: &mut Enclosures) {
         let Some(reach) = &self.reach else { return };
-        let position = Planar::new(EnclosedNumber(pose.position[0]), EnclosedNumber(pose.position[1]));
+        let position = planar(pose.position);
         for (index, leg) in reach.legs.iter().enumerate() {
-            let [x, y] = legs[index]
-                .arm
-                .map(|part| EnclosedNumber(part.scaled(self.frames[index].arm_length)));
-            let margin = leg.lanes(position, Planar::new(x, y)).chain.limit_margin;
+            let arm = legs[index].arm.map(|part| part.scaled(self.frames[index].arm_length));
+            let margin = leg.lanes(position, planar(arm)).chain.limit_margin;
             let off = Interval::new(-reach.slack, reach.slack) - Interval::exactly(reach.limit);
             found.push(PoseScalar::Reach, margin.0.plus(off));
         }

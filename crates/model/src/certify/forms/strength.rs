@@ -17,15 +17,6 @@ pub(super) struct StrengthForms {
     limits: Vec<StrengthLimit>,
 }
 
-/// Units of the legs of the other forms, which the enclosed numbers of loads and motions begin with.
-pub(super) struct LoadForms {
-    /// `L_b` \[m\].
-    link: Interval,
-    /// Unit of the transmissions: `L_b` where they are levers.
-    lever: Interval,
-    platform_radius: Interval,
-}
-
 /// The limit of one scalar.
 struct StrengthLimit {
     scalar: PoseScalar,
@@ -57,70 +48,56 @@ impl StrengthForms {
     }
 }
 
-impl LoadForms {
-    /// Returns the units of a design.
-    pub fn new(design: &Design) -> Self {
-        let link = Interval::exactly(design.link_length());
-        Self {
-            link,
-            lever: match design.architecture().actuator() {
-                JointKind::Prismatic => Interval::exactly(1.0),
-                JointKind::Revolute => link,
-            },
-            platform_radius: Interval::exactly(design.platform_radius()),
-        }
-    }
-
-    /// Encloses what the loads of a leg follow from.
-    fn path(&self, leg: &LegEnclosure, frame: &LegFrameEnclosure) -> LegLoadPath<EnclosedNumber> {
+impl Forms<'_> {
+    /// Encloses what the loads of a leg follow from, of which the other forms have multiples of `L_b` and of `r`.
+    fn load_path(&self, leg: &LegEnclosure, frame: &LegFrameEnclosure) -> LegLoadPath<EnclosedNumber> {
         let chain = &leg.chain;
-        let guide = |guide: &Option<PlanarModel>| guide.map(planar);
-        let [first, second, third] = &chain.guides;
+        let lever = match self.design.architecture().actuator() {
+            JointKind::Prismatic => Interval::exactly(1.0),
+            JointKind::Revolute => frame.link,
+        };
+        let transmission = EnclosedNumber(leg.transmission_square).sqrt();
+        let platform_radius = Interval::exactly(self.design.platform_radius());
         LegLoadPath {
             tangent: planar(chain.tangent),
-            offset: EnclosedNumber(chain.offset.scaled(self.link)),
+            offset: EnclosedNumber(chain.offset.scaled(frame.link)),
             proximal: chain.proximal.map(|bar| {
                 let share = bar.offset.scaled(Interval::exactly(1.0) / frame.proximal);
                 (planar(bar.direction), EnclosedNumber(share))
             }),
-            guides: [guide(first), guide(second), guide(third)],
-            rail: first.map(|_| planar(frame.rail.axis().map(TaylorModel::constant))),
+            guides: chain.guides.map(|guide| guide.map(planar)),
+            rail: chain.guides[0].map(|_| planar(frame.rail.axis().map(TaylorModel::constant))),
             u: planar(leg.u),
-            moment: EnclosedNumber(leg.moment.scaled(self.platform_radius)),
-            transmission: EnclosedNumber(root(leg.transmission_square).scaled(self.lever)),
+            moment: EnclosedNumber(leg.moment.scaled(platform_radius)),
+            transmission: EnclosedNumber(transmission.0.scaled(lever)),
         }
     }
-}
 
-impl Forms<'_> {
     /// Encloses by how much the demands of the strength are below their limits.
     pub(super) fn enclose_strength(&self, legs: &[LegEnclosure; LEGS], (detail, found): (Detail, &mut Enclosures)) {
         let Some(strength) = &self.strength else { return };
-        let open = || strength.limits.iter().filter(|limit| found.needs(limit.scalar));
-        let set = open()
-            .map(|limit| limit.value)
-            .fold(StrengthSet::default(), StrengthSet::with);
+        let limits = strength.limits.iter();
+        let open: Vec<&StrengthLimit> = limits.filter(|limit| found.needs(limit.scalar)).collect();
+        let values = open.iter().map(|limit| limit.value);
+        let set = values.fold(StrengthSet::default(), StrengthSet::with);
         if set.is_empty() {
             return;
         }
-        let stress = open().filter(|limit| matches!(limit.value, StrengthValue::Stress | StrengthValue::SafetyFactor));
+        let is_stress =
+            |limit: &&&StrengthLimit| matches!(limit.value, StrengthValue::Stress | StrengthValue::SafetyFactor);
+        let stress = open.iter().filter(is_stress);
         let kept = stress
             .filter_map(|limit| limit.demand)
             .map(|most| most.lower())
             .reduce(f64::min)
             .filter(|_| detail == Detail::Limits);
         let demands = strength.model.enclose(&self.load_inputs(legs), set, kept);
-        let forms: Vec<(PoseScalar, TaylorModel)> = open()
-            .map(|limit| {
-                let form = match limit.demand {
-                    Some(most) => TaylorModel::constant(most) - demands[limit.value as usize],
-                    None => TaylorModel::exactly(-1.0),
-                };
-                (limit.scalar, form)
-            })
-            .collect();
-        for (scalar, form) in forms {
-            found.push(scalar, form);
+        for limit in open {
+            let form = match limit.demand {
+                Some(most) => TaylorModel::constant(most) - demands[limit.value as usize],
+                None => TaylorModel::exactly(-1.0),
+            };
+            found.push(limit.scalar, form);
         }
     }
 
@@ -128,7 +105,7 @@ impl Forms<'_> {
     pub(super) fn load_inputs(&self, legs: &[LegEnclosure; LEGS]) -> StrengthInputs<EnclosedNumber> {
         // Legs are large, and `map` would copy them.
         StrengthInputs {
-            legs: [0, 1, 2].map(|i| self.loads.path(&legs[i], &self.frames[i])),
+            legs: [0, 1, 2].map(|i| self.load_path(&legs[i], &self.frames[i])),
             arms: [0, 1, 2].map(|i| planar(legs[i].arm.map(|part| part.scaled(self.frames[i].arm_length)))),
             along: [0, 1, 2].map(|i| EnclosedNumber(self.along_line(&legs[i], i).scaled(self.compliance.unit))),
             stiffness: [0, 1, 2].map(|i| self.stiffness_out_of_plane(&legs[i], i)),
@@ -195,8 +172,4 @@ fn decoupled(compliance: &[TaylorModel; 6]) -> [f64; 2] {
 
 pub(super) fn planar([x, y]: PlanarModel) -> Planar<EnclosedNumber> {
     Planar::new(EnclosedNumber(x), EnclosedNumber(y))
-}
-
-fn root(square: TaylorModel) -> TaylorModel {
-    EnclosedNumber(square).sqrt().0
 }

@@ -1,11 +1,11 @@
 //! What a design does along a motion, over an interval of time (docs/model.md, section 15.11).
 
 use super::strength::planar;
-use super::{Enclosures, Forms, ProvedForms, ReachForms, enclose_legs, turn};
+use super::{Enclosures, Forms, ProvedForms, ReachForms, determinant, enclose_legs};
 use crate::dynamics::{DynamicsInputs, DynamicsModel, EnclosedMotion};
 use crate::enclosure::TaylorModel;
 use crate::evaluation::Model;
-use crate::mechanism::{Design, LegEnclosure};
+use crate::mechanism::Design;
 use crate::spatial::{LEGS, Pose};
 
 /// What a design does over an interval of time.
@@ -58,10 +58,4 @@ impl<'a> TravelForms<'a> {
             drives: self.dynamics.enclose_drives(&inputs, motion.twist, motion.acceleration),
         })
     }
-}
-
-/// Encloses `det A`, up to a positive factor.
-fn determinant(legs: &[LegEnclosure; LEGS]) -> TaylorModel {
-    let parts = [0, 1, 2].map(|i: usize| legs[i].moment * turn(legs, i));
-    parts[0] + parts[1] + parts[2]
 }

@@ -38,7 +38,7 @@ impl<L: Leg> Sizer<'_, L> {
         let window: Vec<usize> = self.orientation_grid.window(home).collect();
         self.lay_disc(radius, &window);
         let bars = self.lightest_bars(SizingAccuracy::COARSE)?;
-        Some(self.with_bars(bars))
+        Some(self.design.with_bars(bars))
     }
 
     /// Lays out the ring of a radius in the given orientations, and returns the number of poses in each orientation.
@@ -46,11 +46,7 @@ impl<L: Leg> Sizer<'_, L> {
         let count = if radius > 0.0 { DIRECTIONS * self.sectors } else { 1 };
         let step = TAU / (LEGS * DIRECTIONS) as f64;
         let ring: Vec<DVec2> = (0..count).map(|k| self.position(radius, k as f64 * step)).collect();
-        self.laid.clear();
-        for &orientation in orientations {
-            self.laid.extend(&ring, &self.arms[orientation]);
-        }
-        self.laid.pad();
+        self.lay(&ring, orientations);
         count
     }
 
@@ -61,33 +57,27 @@ impl<L: Leg> Sizer<'_, L> {
         let spacing = [radius / RINGS.len() as f64, step];
         self.shape = Shape::Disc(radius);
         self.places.clear();
+        let placed = |orientation: usize, place: [f64; 2]| PlacedPose {
+            orientation,
+            place,
+            spacing,
+            refined: false,
+        };
         for &orientation in orientations {
-            self.places.push(PlacedPose {
-                orientation,
-                place: [0.0, 0.0],
-                spacing,
-                refined: false,
-            });
+            self.places.push(placed(orientation, [0.0, 0.0]));
             for (ring, fraction) in RINGS.iter().enumerate() {
                 let offset = if ring % 2 == 0 { 0.0 } else { 0.5 };
-                self.places.extend((0..DIRECTIONS * self.sectors).map(|k| PlacedPose {
-                    orientation,
-                    place: [fraction * radius, (k as f64 + offset) * step],
-                    spacing,
-                    refined: false,
-                }));
+                let on_ring = |k: usize| [fraction * radius, (k as f64 + offset) * step];
+                let ring = (0..DIRECTIONS * self.sectors).map(|k| placed(orientation, on_ring(k)));
+                self.places.extend(ring);
             }
         }
-        self.laid.clear();
         let of_one = 1 + RINGS.len() * DIRECTIONS * self.sectors;
         let disc: Vec<DVec2> = self.places[..of_one]
             .iter()
             .map(|pose| self.position_of(pose.place))
             .collect();
-        for &orientation in orientations {
-            self.laid.extend(&disc, &self.arms[orientation]);
-        }
-        self.laid.pad();
+        self.lay(&disc, orientations);
     }
 
     /// Returns the sign of `det A` on the ring for each orientation; `None` if the orientation is not among the given

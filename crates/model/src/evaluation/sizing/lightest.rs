@@ -118,27 +118,38 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
     if weakest(&ratios.ratios_at_all(upper.map(libm::exp))) < 1.0 {
         return None;
     }
-    let mut at = inside([0, 1].map(|k| libm::log(problem.start[k].max(THINNEST * problem.ranges[k][1]))));
+    let start = inside([0, 1].map(|k| libm::log(problem.start[k].max(THINNEST * problem.ranges[k][1]))));
+    let near = linearised(problem, ratios, start, &inside);
+    let held = held(problem, ratios, (near, upper), &inside);
+    // The exponential of the logarithm of a bound may exceed the bound by a rounding error.
+    let [low, high] = [0, 1].map(|end| problem.ranges.map(|range| range[end]));
+    Some([0, 1].map(|k| libm::exp(held[k]).clamp(low[k], high[k])))
+}
+
+/// Returns the logarithms of the radii of smallest mass by a sequence of linearisations, on the poses with the smallest ratios. They may
+/// violate a constraint slightly.
+fn linearised(
+    problem: &SizingProblem,
+    ratios: &mut impl StiffnessRatios,
+    mut at: [f64; 2],
+    inside: &impl Fn([f64; 2]) -> [f64; 2],
+) -> [f64; 2] {
     let mut chosen: Vec<usize> = Vec::new();
     let SizingAccuracy { settled, spare, steps } = problem.accuracy;
     for round in 0..steps[0] {
         let mut all = ratios.ratios_at_all(at.map(libm::exp));
         if round == 0 {
             // Both radii are first scaled alike to come close to the constraints.
-            at = scaled(at, weakest(&all), &inside);
+            at = scaled(at, weakest(&all), inside);
             all = ratios.ratios_at_all(at.map(libm::exp));
         } else if weakest(&all) > 1.0 - spare {
             break;
         }
         let mut weak = Vec::new();
         for column in &all {
-            let mut order: Vec<usize> = (0..column.len()).collect();
-            let count = CHOSEN.min(order.len());
-            let by_ratio = |a: &usize, b: &usize| column[*a].total_cmp(&column[*b]).then(a.cmp(b));
-            order.select_nth_unstable_by(count - 1, by_ratio);
-            order[..count].sort_unstable_by(by_ratio);
-            chosen.extend(&order[..count]);
-            weak.extend(&order[..REFINED.min(count)]);
+            let order = smallest(column, CHOSEN);
+            chosen.extend(&order);
+            weak.extend(order.iter().take(REFINED));
         }
         chosen.sort_unstable();
         chosen.dedup();
@@ -158,8 +169,17 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
             trust *= 0.7;
         }
     }
-    // The linearised optimum may violate a constraint slightly: both radii are scaled, by no more than necessary, until
-    // all constraints hold.
+    at
+}
+
+/// Returns logarithms of radii with which all constraints hold: both radii are scaled, by no more than necessary.
+fn held(
+    problem: &SizingProblem,
+    ratios: &mut impl StiffnessRatios,
+    (mut at, upper): ([f64; 2], [f64; 2]),
+    inside: &impl Fn([f64; 2]) -> [f64; 2],
+) -> [f64; 2] {
+    let SizingAccuracy { spare, steps, .. } = problem.accuracy;
     let mut held = upper;
     let mut short: Option<[f64; 2]> = None;
     for _ in 0..steps[2] {
@@ -172,7 +192,7 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
         } else {
             short = Some(at);
         }
-        let next = scaled(at, weakest / (1.0 + 0.5 * spare), &inside);
+        let next = scaled(at, weakest / (1.0 + 0.5 * spare), inside);
         at = match short {
             // The next radii stay between those that violate a constraint and those that satisfy all, and pass neither.
             Some(short) if held != upper && !between(next, short, held) => {
@@ -181,12 +201,23 @@ pub(super) fn lightest(problem: &SizingProblem, ratios: &mut impl StiffnessRatio
             _ => next,
         };
     }
-    // The exponential of the logarithm of a bound may exceed the bound by a rounding error.
-    let [low, high] = [0, 1].map(|end| problem.ranges.map(|range| range[end]));
-    Some([0, 1].map(|k| libm::exp(held[k]).clamp(low[k], high[k])))
+    held
 }
 
-fn weakest(columns: &Ratios) -> f64 {
+/// Returns the places of the smallest numbers, the smallest one first and equal ones in their order.
+pub(super) fn smallest(numbers: &[f64], count: usize) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..numbers.len()).collect();
+    let by_number = |a: &usize, b: &usize| numbers[*a].total_cmp(&numbers[*b]).then(a.cmp(b));
+    if count < places.len() {
+        places.select_nth_unstable_by(count, by_number);
+        places.truncate(count);
+    }
+    places.sort_unstable_by(by_number);
+    places
+}
+
+/// Returns the smallest ratio.
+pub(super) fn weakest(columns: &Ratios) -> f64 {
     columns
         .iter()
         .flatten()

@@ -1,6 +1,6 @@
 //! The lightest pair of bars when one or both are selected from a catalogue.
 
-use super::lightest::{BarMass, Ratios, SizingProblem, StiffnessRatios, lightest};
+use super::lightest::{BarMass, SizingProblem, StiffnessRatios, lightest, smallest, weakest};
 
 /// Number of poses on which a pair is tested first.
 const TESTED_FIRST: usize = 30;
@@ -68,18 +68,9 @@ fn of_two_lists(
     pairs.sort_by(|a, b| a.1.total_cmp(&b.1));
     // Few poses tell most pairs that do not carry.
     let middle = pairs.get(pairs.len() / 2)?.0;
-    let weakest = |columns: &Ratios| {
-        columns
-            .iter()
-            .flatten()
-            .fold(f64::INFINITY, |least: f64, ratio| least.min(*ratio))
-    };
-    let mut chosen: Vec<usize> = Vec::new();
-    for column in &ratios.ratios_at_all(middle) {
-        let mut poses: Vec<usize> = (0..column.len()).collect();
-        poses.sort_by(|&a, &b| column[a].total_cmp(&column[b]));
-        chosen.extend(poses.into_iter().take(TESTED_FIRST));
-    }
+    let columns = ratios.ratios_at_all(middle);
+    let of_columns = columns.iter().flat_map(|column| smallest(column, TESTED_FIRST));
+    let mut chosen: Vec<usize> = of_columns.collect();
     chosen.sort_unstable();
     chosen.dedup();
     ratios.choose(&chosen, &[]);

@@ -72,7 +72,7 @@ impl Model {
             let sized = |with_frequencies: bool| {
                 let mut sizer = Sizer::<L>::new(self, design, ranges, grid);
                 if !with_frequencies {
-                    sizer.drop_limits(is_frequency);
+                    sizer.checker.drop_limits(is_frequency);
                 }
                 sizer.set_bars([ranges.leg[1], ranges.platform[1]]);
                 match target {

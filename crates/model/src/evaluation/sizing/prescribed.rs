@@ -37,11 +37,10 @@ impl SizedPoses {
     /// For bars that are known nearly, to an accuracy.
     pub fn exactly(accuracy: SizingAccuracy) -> Self {
         Self {
-            must_hold: true,
             near: 1.1,
             accuracy,
-            keeps_bars: false,
             repeats: 10,
+            ..Self::COARSELY
         }
     }
 
@@ -81,7 +80,8 @@ impl<L: Leg> Sizer<'_, L> {
         let all: Vec<usize> = (0..self.arms.len()).collect();
         let signs = self.feasible_signs(&samples.all[..samples.first], &all);
         let candidates = self.windows(&signs);
-        let homes = self.stiffest_homes(&signs, &samples, &candidates);
+        self.lay_positions(&samples.all[..samples.first], &candidates);
+        let homes = self.stiffest_first(self.homes(&signs), samples.first, &candidates);
         homes
             .into_iter()
             .take(HOMES)
@@ -92,7 +92,7 @@ impl<L: Leg> Sizer<'_, L> {
     /// constraint then sees how the mass goes on beyond it.
     pub(super) fn sized_nearly(mut self, grid: GridChoice) -> Option<Design> {
         let samples = self.samples(grid);
-        let thickest = self.with_bars([self.ranges.leg[1], self.ranges.platform[1]]);
+        let thickest = self.design.with_bars([self.ranges.leg[1], self.ranges.platform[1]]);
         let (home, margin) = self.best_home(&thickest, grid);
         if margin < -NEARLY {
             return None;
@@ -112,7 +112,7 @@ impl<L: Leg> Sizer<'_, L> {
         };
         let pairs = legs.iter().flat_map(|&leg| platform.iter().map(move |&bar| [leg, bar]));
         let mut lighter: Vec<(f64, Design)> = pairs
-            .map(|bars| self.with_bars(bars))
+            .map(|bars| self.design.with_bars(bars))
             .map(|pair| (model.mass(&pair), pair))
             .filter(|(mass, _)| *mass < model.mass(&design))
             .collect();
@@ -150,8 +150,7 @@ impl<L: Leg> Sizer<'_, L> {
             if window.iter().any(|&k| signs[k] != Some(first)) {
                 return None;
             }
-        }
-        if !how.must_hold {
+        } else {
             self.lay_positions(positions, &window);
         }
         let own = [self.design.leg_bar_radius(), self.design.platform_bar_radius()];
@@ -168,7 +167,7 @@ impl<L: Leg> Sizer<'_, L> {
             let ratios = self.ratios_at_all(bars);
             std::mem::swap(&mut self.laid, &mut everything);
             if below_one(&ratios).is_empty() {
-                return Some(self.with_bars(bars));
+                return Some(self.design.with_bars(bars));
             }
             near.extend(near_weakest(&ratios, how.near));
             near.sort_unstable();
@@ -182,18 +181,6 @@ impl<L: Leg> Sizer<'_, L> {
     fn feasible_signs(&mut self, positions: &[DVec2], orientations: &[usize]) -> Vec<Option<f64>> {
         self.lay_positions(positions, orientations);
         self.signs_of_laid(positions.len(), orientations)
-    }
-
-    /// Returns the home orientations whose window has one sign, the one that is stiffest on the boundary first.
-    fn stiffest_homes(
-        &mut self,
-        signs: &[Option<f64>],
-        samples: &RegionPositions,
-        orientations: &[usize],
-    ) -> Vec<usize> {
-        let homes = self.homes(signs);
-        self.lay_positions(&samples.all[..samples.first], orientations);
-        self.stiffest_first(homes, samples.first, orientations)
     }
 }
 

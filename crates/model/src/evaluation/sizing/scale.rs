@@ -95,7 +95,7 @@ impl<L: Leg> Sizer<'_, L> {
 
     /// Returns a sizer of the same geometry that starts with the bars of another design.
     fn starting_with(&self, bars: &Design, grid: GridChoice) -> Self {
-        let design = self.with_bars(bars_of(bars));
+        let design = self.design.with_bars(bars_of(bars));
         Self::new(self.model, &design, self.ranges, grid)
     }
 

@@ -26,7 +26,7 @@ pub(super) struct Sizer<'a, L> {
     pub design: Design,
     pub ranges: &'a SizingRanges,
     /// Checker of the design, with the thickest bars until a radius is determined.
-    checker: PoseChecker<L>,
+    pub checker: PoseChecker<L>,
     /// Arms in every orientation, as on the reference grid.
     pub arms: Vec<[DVec2; LEGS]>,
     pub orientation_grid: OrientationGrid,
@@ -69,11 +69,6 @@ impl<'a, L: Leg> Sizer<'a, L> {
         }
     }
 
-    /// Sizes for all limits but those of some scalars from now on.
-    pub fn drop_limits(&mut self, is_dropped: impl Fn(PoseScalar) -> bool) {
-        self.checker.drop_limits(is_dropped);
-    }
-
     /// Returns the radii of the lightest bars for the poses that are laid out.
     pub fn lightest_bars(&mut self, accuracy: SizingAccuracy) -> Option<[f64; 2]> {
         let problem = SizingProblem {
@@ -87,7 +82,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
     }
 
     fn bar_masses(&self) -> [BarMass; 2] {
-        let unit = self.with_bars([1.0, 1.0]);
+        let unit = self.design.with_bars([1.0, 1.0]);
         let sections = &self.model.settings().sections;
         let squared = [self.model.leg_bars_mass(&unit), self.model.platform_mass(&unit)];
         let legs = LEGS as f64 * self.design.leg_bars_length();
@@ -104,10 +99,6 @@ impl<'a, L: Leg> Sizer<'a, L> {
         })
     }
 
-    pub fn with_bars(&self, bars: [f64; 2]) -> Design {
-        self.design.with_bars(bars)
-    }
-
     /// Runs `look` without the requirement of a clearance: the stiffness ratios do not depend on it.
     fn without_clearance<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> T {
         let clearance = self.checker.thresholds.get(PoseScalar::Clearance);
@@ -118,7 +109,7 @@ impl<'a, L: Leg> Sizer<'a, L> {
     }
 
     pub fn set_bars(&mut self, bars: [f64; 2]) {
-        let design = self.with_bars(bars);
+        let design = self.design.with_bars(bars);
         self.checker.stiffness = self.model.stiffness(&design);
         self.checker.strength = self.model.strength_if_asked(&design, self.checker.stiffness.as_ref());
         self.checker.dynamics = self.model.dynamics_if_asked(&design, self.checker.stiffness.as_ref());
@@ -166,9 +157,14 @@ impl<'a, L: Leg> Sizer<'a, L> {
     pub fn lay_positions(&mut self, positions: &[DVec2], orientations: &[usize]) {
         let centre = self.model.settings().workspace.centre;
         let positions: Vec<DVec2> = positions.iter().map(|position| *position + centre).collect();
+        self.lay(&positions, orientations);
+    }
+
+    /// Lays out positions in the base frame in the given orientations.
+    pub fn lay(&mut self, positions: &[DVec2], orientations: &[usize]) {
         self.laid.clear();
         for &orientation in orientations {
-            self.laid.extend(&positions, &self.arms[orientation]);
+            self.laid.extend(positions, &self.arms[orientation]);
         }
         self.laid.pad();
     }

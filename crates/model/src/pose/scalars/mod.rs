@@ -6,11 +6,13 @@
 
 mod displacement;
 mod dynamics;
+mod entry;
 mod footprint;
 mod strength;
 mod transmission;
 
 pub(super) use dynamics::keep_limits_of_motion;
+pub use entry::{MarginUnit, PoseScalarEntry};
 
 use super::PoseChecker;
 use super::entry::{Better, QuantityEntry, Reference, Scope};
@@ -21,91 +23,10 @@ use crate::mechanism::{JointKind, Leg};
 use crate::spatial::LEGS;
 use crate::strength::{StrengthSet, StrengthValue};
 
-/// What there is to know about a scalar of a pose.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PoseScalarEntry {
-    /// The quantity of a design: the worst value over the poses of the region.
-    pub quantity: QuantityEntry,
-    /// Key of the value at one pose.
-    pub at_pose: &'static str,
-    /// Name to display of the value at one pose, without the unit.
-    pub label: &'static str,
-    /// Unit to display, and the factor from the SI unit to it.
-    pub shown_in: (&'static str, f64),
-    /// How margins of the value are made dimensionless.
-    pub margin: MarginUnit,
-    /// Whether thicker bars improve the value and nothing else of the design has to change for that.
-    pub is_of_bars: bool,
-    /// Whether a certificate encloses the value over boxes of poses: a limit of any other value is not proved.
-    pub is_enclosed: bool,
-    /// Whether the value is the root of a stiffness by a mass: bars are sized by its square, and from some radius on the mass of thicker
-    /// bars makes it worse.
-    pub is_frequency: bool,
-}
-
 const _: () = assert!(
     MotionValue::ALL.len() == PoseScalar::OF_MOTION.len(),
     "every limit of a motion is examined"
 );
-
-/// What a margin is divided by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MarginUnit {
-    /// The threshold, unless that is 0.
-    Threshold,
-    /// `R`: a distance between parts of the manipulator, whose threshold may well be 0.
-    BaseRadius,
-}
-
-impl PoseScalarEntry {
-    const fn new(quantity: QuantityEntry, at_pose: &'static str) -> Self {
-        Self {
-            label: quantity.label,
-            shown_in: (quantity.unit, 1.0),
-            quantity,
-            at_pose,
-            margin: MarginUnit::Threshold,
-            is_of_bars: false,
-            is_enclosed: false,
-            is_frequency: false,
-        }
-    }
-
-    const fn labelled(mut self, label: &'static str) -> Self {
-        self.label = label;
-        self
-    }
-
-    const fn in_millimetres(mut self) -> Self {
-        self.shown_in = ("mm", 1e3);
-        self
-    }
-
-    const fn per_base_radius(mut self) -> Self {
-        self.margin = MarginUnit::BaseRadius;
-        self
-    }
-
-    const fn shown_in(mut self, unit: &'static str, factor: f64) -> Self {
-        self.shown_in = (unit, factor);
-        self
-    }
-
-    const fn as_frequency(mut self) -> Self {
-        self.is_frequency = true;
-        self
-    }
-
-    const fn enclosed(mut self) -> Self {
-        self.is_enclosed = true;
-        self
-    }
-
-    const fn of_bars(mut self) -> Self {
-        self.is_of_bars = true;
-        self
-    }
-}
 
 macro_rules! pose_scalars {
     (
@@ -194,7 +115,7 @@ macro_rules! pose_scalars {
         }
 
         /// Constraints with their ids, their names, and the scalars that they bound.
-        const CONSTRAINTS: &[(Constraint, &str, &str, Option<PoseScalar>)] = &[
+        pub(super) const CONSTRAINTS: &[(Constraint, &str, &str, Option<PoseScalar>)] = &[
             (Constraint::Assembly, "g1", "assembly", None),
             $($((Constraint::$constraint, $id, $name, Some(PoseScalar::$scalar)),)?)*
             $($((Constraint::$bound, $bound_id, $bound_name, Some(PoseScalar::$more)),)?)*
@@ -456,43 +377,5 @@ impl PoseScalar {
     /// Whether a limit of the quantity bounds each pose.
     pub fn bounds_poses(self) -> bool {
         self.entry().quantity.scope == Scope::Poses
-    }
-}
-
-impl Constraint {
-    /// Number of constraints.
-    pub const COUNT: usize = CONSTRAINTS.len();
-
-    /// All constraints, beginning with g1.
-    pub const ALL: [Constraint; Self::COUNT] = {
-        let mut all = [Constraint::Assembly; Self::COUNT];
-        let mut place = 0;
-        while place < Self::COUNT {
-            all[place] = CONSTRAINTS[place].0;
-            place += 1;
-        }
-        all
-    };
-
-    /// Returns the short id, as in JSON and CSV.
-    pub fn id(self) -> &'static str {
-        CONSTRAINTS[self as usize].1
-    }
-
-    /// Returns the name, as in JSON.
-    pub fn name(self) -> &'static str {
-        CONSTRAINTS[self as usize].2
-    }
-
-    /// Returns the scalar of a pose that it bounds; `None` for g1, which applies to the design as a whole.
-    pub fn scalar(self) -> Option<PoseScalar> {
-        CONSTRAINTS[self as usize].3
-    }
-
-    /// Returns the constraint that bounds a scalar of a pose, if it has an id of its own.
-    pub fn of_scalar(scalar: PoseScalar) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|constraint| constraint.scalar() == Some(scalar))
     }
 }

@@ -93,7 +93,7 @@ impl Separations {
                 .collect(),
             settings: model.settings().legs,
             to_unit,
-            slider: Interval::new(half_axis.lower().max(0.0), half_axis.upper().max(0.0)) * to_unit,
+            slider: half_axis.max(exactly(0.0)) * to_unit,
             from_rail_end: half_length + clearance,
             pairs: pairs(&members, clearance),
             barriers: barriers(model, &members, clearance),
@@ -114,26 +114,28 @@ impl Separations {
             rails: [None; LEGS],
         };
         let position = pose.position.map(|part| part.scaled(self.to_unit));
+        let anchor = |frame: &LegFrameEnclosure| {
+            let at_base = frame.anchor.map(|part| TaylorModel::constant(part * frame.to_unit));
+            difference(at_base, position)
+        };
         let mut elbows = [None; LEGS];
         for (index, leg) in legs.iter().enumerate() {
             let frame = &frames[index];
             let arm = leg.arm;
             let length = frame.arm_length * frame.to_unit;
             let tip = arm.map(|part| part.scaled(length));
-            let at_base = frame.anchor.map(|part| TaylorModel::constant(part * frame.to_unit));
-            let anchor = difference(at_base, position);
             let is_slider = design.architecture().chain().proximal == Some(MemberKind::Slider);
             let MembersEnclosure { proximal, distal, rail } =
-                AnyLeg::enclose_members(frame, design, &self.settings, leg, anchor, tip);
+                AnyLeg::enclose_members(frame, design, &self.settings, leg, anchor(frame), tip);
             // A slider is a point before it is extended, and a crank or turning guide leads from the base to the joint.
             elbows[index] = proximal.map(|axis| axis.points[if is_slider { 0 } else { 1 }]);
-            boxes.axes[LEGS * PROXIMAL + index] = proximal.map(|axis| match design.architecture().chain().proximal {
-                Some(_) if is_slider => {
-                    let half = axis.direction.map(|part| part.scaled(self.slider));
-                    let [centre, ..] = axis.points;
-                    AxisEnclosure::between(difference(centre, half), sum(centre, half), axis.direction)
+            boxes.axes[LEGS * PROXIMAL + index] = proximal.map(|axis| {
+                if !is_slider {
+                    return axis;
                 }
-                _ => axis,
+                let half = axis.direction.map(|part| part.scaled(self.slider));
+                let [centre, ..] = axis.points;
+                AxisEnclosure::between(difference(centre, half), sum(centre, half), axis.direction)
             });
             boxes.axes[LEGS * DISTAL + index] = Some(distal);
             let middle = [TaylorModel::exactly(0.0); 2];
@@ -141,12 +143,8 @@ impl Separations {
             boxes.rails[index] = rail;
         }
         for &(leg, point) in &self.joints {
-            let frame = &frames[leg];
             let at = match point {
-                JointPoint::A => {
-                    let at_base = frame.anchor.map(|part| TaylorModel::constant(part * frame.to_unit));
-                    Some(difference(at_base, position))
-                }
+                JointPoint::A => Some(anchor(&frames[leg])),
                 JointPoint::B => elbows[leg],
                 JointPoint::C => boxes.axes[LEGS * PLATFORM + leg].map(|bar| bar.points[1]),
             };
@@ -164,9 +162,8 @@ impl Separations {
         self.enclose_rail_ends(boxes, found);
         self.for_near_pairs(boxes, |pair, a, b| separate(a, b, pair.distance, found));
         let before = found.count();
-        self.for_near_edges(boxes, |seen| match seen {
-            Seen::Edge { axis, edge, distance } => separate(axis, edge, distance.upper, found),
-            Seen::WrongSide(distance) => found.push(PoseScalar::Clearance, wrong_side(distance)),
+        self.for_near_edges(boxes, found, |[axis, edge], distance, found| {
+            separate(axis, edge, distance.upper, found);
         });
         found.may_contract &= found.count() == before;
     }
@@ -178,14 +175,11 @@ impl Separations {
             let way = difference(nearest(b, a), nearest(a, b));
             found.push(PoseScalar::Clearance, dot(way, way).plus(-pair.square));
         });
-        self.for_near_edges(boxes, |seen| match seen {
-            Seen::Edge { axis, edge, distance } => {
-                let way = difference(nearest(edge, axis), nearest(axis, edge));
-                let form = dot(way, way).plus(-distance.square);
-                let is_refuted = form.is_negative() && !distance.is_certain;
-                found.push(PoseScalar::Clearance, if is_refuted { undecided() } else { form });
-            }
-            Seen::WrongSide(distance) => found.push(PoseScalar::Clearance, wrong_side(distance)),
+        self.for_near_edges(boxes, found, |[axis, edge], distance, found| {
+            let way = difference(nearest(edge, axis), nearest(axis, edge));
+            let form = dot(way, way).plus(-distance.square);
+            let is_refuted = form.is_negative() && !distance.is_certain;
+            found.push(PoseScalar::Clearance, if is_refuted { undecided() } else { form });
         });
     }
 
@@ -201,50 +195,27 @@ impl Separations {
         boxes: &MemberBoxes,
         mut examine: impl FnMut(&SeparatedPair, &AxisEnclosure, &AxisEnclosure),
     ) {
-        let bounds: Vec<Option<Bounds>> = boxes.axes.iter().map(|axis| axis.as_ref().map(Bounds::of)).collect();
+        let axes = boxes.axes.iter().map(Option::as_ref);
+        let bounded: Vec<_> = axes.map(|axis| axis.map(|axis| (axis, Bounds::of(axis)))).collect();
         for pair in &self.pairs {
-            let [first, second] = pair.places;
-            if let (Some(a), Some(b), Some(bounds_a), Some(bounds_b)) =
-                (&boxes.axes[first], &boxes.axes[second], &bounds[first], &bounds[second])
-                && !bounds_a.is_farther(bounds_b, pair.distance)
+            if let [Some((a, of_a)), Some((b, of_b))] = pair.places.map(|place| &bounded[place])
+                && !of_a.is_farther(of_b, pair.distance)
             {
                 examine(pair, a, b);
             }
         }
     }
-}
 
-/// What is to be proved of a member and an outline.
-enum Seen<'a> {
-    /// That its axis keeps a distance from an edge.
-    Edge {
-        axis: &'a AxisEnclosure,
-        edge: &'a AxisEnclosure,
-        distance: Distance,
-    },
-    /// Nothing: it is on the wrong side in the middle of the box.
-    WrongSide(Distance),
-}
-
-/// A form of which nothing is known.
-fn undecided() -> TaylorModel {
-    TaylorModel::constant(Interval::new(-1.0, 1.0))
-}
-
-/// The form of a member that is on the wrong side of an outline.
-fn wrong_side(distance: Distance) -> TaylorModel {
-    if distance.is_certain {
-        TaylorModel::exactly(-1.0)
-    } else {
-        undecided()
-    }
-}
-
-impl Separations {
-    /// Calls `examine` with the edges of outlines that are not far enough from a member, and with the members that are on the wrong side.
+    /// Calls `examine` with the axes of members and the edges of outlines that are not far enough from each other, and with the distance that
+    /// they must keep. Of a member that is on the wrong side of an outline in the middle of the box, nothing is proved.
     ///
     /// A member that keeps a distance from every edge over a box does not change its side there.
-    fn for_near_edges(&self, boxes: &MemberBoxes, mut examine: impl FnMut(Seen<'_>)) {
+    fn for_near_edges(
+        &self,
+        boxes: &MemberBoxes,
+        found: &mut Enclosures,
+        examine: impl Fn([&AxisEnclosure; 2], Distance, &mut Enclosures),
+    ) {
         let position = boxes.position.map(|part| part.scaled(self.to_unit));
         for separated in &self.barriers {
             let barrier = &separated.barrier;
@@ -270,18 +241,29 @@ impl Separations {
                     (of_member + position[k].constant) / self.to_unit.lower()
                 });
                 if !barrier.is_on_right_side(DVec2::from_array(middle)) {
-                    examine(Seen::WrongSide(distance));
+                    let is_certain = distance.is_certain;
+                    let form = if is_certain {
+                        TaylorModel::exactly(-1.0)
+                    } else {
+                        undecided()
+                    };
+                    found.push(PoseScalar::Clearance, form);
                     continue;
                 }
                 let bounds = Bounds::of(axis);
                 for (edge, of_edge) in &edges {
                     if !bounds.is_farther(of_edge, distance.upper) {
-                        examine(Seen::Edge { axis, edge, distance });
+                        examine([axis, edge], distance, found);
                     }
                 }
             }
         }
     }
+}
+
+/// A form of which nothing is known.
+fn undecided() -> TaylorModel {
+    TaylorModel::constant(Interval::new(-1.0, 1.0))
 }
 
 /// Encloses the unit vector along an edge; any vector for one without length.

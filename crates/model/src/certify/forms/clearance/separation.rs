@@ -145,8 +145,11 @@ fn directions(a: &AxisEnclosure, b: &AxisEnclosure) -> Option<[Direction; 3]> {
             offer(length_squared(minus(*q, *p)), Direction::Between { from, to });
         }
     }
-    let side = |height: f64| if height < 0.0 { -1.0 } else { 1.0 };
     let normals = [(true, &first, &second, a), (false, &second, &first, b)].map(|(of_first, straight, other, axis)| {
+        let normal = |height: f64| Direction::Normal {
+            of_first,
+            sign: if height < 0.0 { -1.0 } else { 1.0 },
+        };
         let along = axis.direction.map(|part| part.constant);
         let places = straight.map(|point| scalar(minus(point, straight[0]), along));
         let (least, most) = places
@@ -157,22 +160,13 @@ fn directions(a: &AxisEnclosure, b: &AxisEnclosure) -> Option<[Direction; 3]> {
             let way = minus(*point, straight[0]);
             let (place, height) = (scalar(way, along), along[0] * way[1] - along[1] * way[0]);
             if place > least && place < most {
-                offer(
-                    height * height,
-                    Direction::Normal {
-                        of_first,
-                        sign: side(height),
-                    },
-                );
+                offer(height * height, normal(height));
             }
             if height.abs() < nearest.abs() {
                 nearest = height;
             }
         }
-        Direction::Normal {
-            of_first,
-            sign: side(nearest),
-        }
+        normal(nearest)
     });
     let (_, shortest) = best?;
     Some([shortest, normals[0], normals[1]])

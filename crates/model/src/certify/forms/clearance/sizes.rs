@@ -17,10 +17,7 @@ pub(super) fn barriers(model: &Model, members: &Members<'_>, clearance: Interval
         let [low, high] = barrier.heights.map(exactly);
         let [below, above] = [low - size.heights[1], size.heights[0] - high];
         // By how much the body lies above or below, if it does.
-        let gap = Interval::new(
-            below.lower().max(above.lower()).max(0.0),
-            below.upper().max(above.upper()).max(0.0),
-        );
+        let gap = below.max(above).max(exactly(0.0));
         let distance = size.radius + clearance;
         let (keep, is_certain) = if size.is_prism {
             let apart = gap - size.beyond;
@@ -139,10 +136,7 @@ impl<'a> Members<'a> {
         let half = exactly(0.5);
         let (middle, half) = (half * (low + high), half * height);
         let (bottom, top) = (middle - half, middle + half);
-        [
-            Interval::new(low.lower().min(bottom.lower()), low.upper().min(bottom.upper())),
-            Interval::new(high.lower().max(top.lower()), high.upper().max(top.upper())),
-        ]
+        [low.min(bottom), high.max(top)]
     }
 }
 
@@ -157,7 +151,7 @@ pub(super) fn pairs(members: &Members<'_>, clearance: Interval) -> Vec<Separated
             second.heights[0] - first.heights[1],
             first.heights[0] - second.heights[1],
         );
-        let gap = Interval::new(below.lower().max(above.lower()), below.upper().max(above.upper()));
+        let gap = below.max(above);
         let round = [&first, &second].into_iter().find(|size| !size.is_prism);
         let has_joint = places.iter().any(|&place| place >= MEMBERS);
         let square = match (first.is_prism || second.is_prism, round) {
@@ -180,7 +174,7 @@ pub(super) fn pairs(members: &Members<'_>, clearance: Interval) -> Vec<Separated
 /// between the height of the bar's axis and those of the cylinder; `None` if the latter alone keeps the clearance.
 fn beside_cylinder(bar: Interval, cylinder: Interval, gap: Interval, clearance: Interval) -> Option<Interval> {
     let distance = bar + clearance;
-    let gap = Interval::new(gap.lower().max(0.0), gap.upper().max(0.0));
+    let gap = gap.max(Interval::exactly(0.0));
     let keep = distance.square() - gap.square();
     if distance.upper() <= 0.0 || keep.upper() <= 0.0 {
         return None;
@@ -196,8 +190,7 @@ fn between_prisms(radii: Interval, apart: Interval, clearance: Interval) -> Opti
         return None;
     }
     // Where the layers overlap, nothing of the clearance is kept by them.
-    let kept = Interval::new(apart.lower().max(0.0), apart.upper().max(0.0));
-    let left = clearance.square() - kept.square();
-    let left = Interval::new(left.lower().max(0.0), left.upper().max(0.0));
+    let zero = Interval::exactly(0.0);
+    let left = (clearance.square() - apart.max(zero).square()).max(zero);
     Some((radii + left.sqrt()).square())
 }
