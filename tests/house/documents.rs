@@ -61,7 +61,7 @@ fn documents() -> Vec<String> {
     let folder = root().join("docs");
     let in_docs = files(&folder, "md")
         .into_iter()
-        .filter(|path| path.parent() == Some(&folder));
+        .filter(|path| path.parent() == Some(folder.as_path()));
     let in_docs = in_docs.map(|path| {
         let path = path.strip_prefix(root()).expect("a file of the repository");
         path.to_string_lossy().into_owned()

@@ -144,7 +144,11 @@ fn a_front_can_be_left_unproved() {
     let folder = folder();
     let text = "architectures = [\"3-RRR\"]\n[workspace]\ncertify = false\n";
     let (study, out) = (folder.write("unproved.toml", text), folder.join("unproved"));
-    optimize(&study, &out, &["--evaluations", "200", "--no-recording"]);
+    optimize(
+        &study,
+        &out,
+        &["--evaluations", "200", "--front", "12", "--no-recording"],
+    );
     let mut table = csv::Reader::from_path(out.join("front.csv")).expect("a table");
     let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
     assert!(!rows.is_empty() && rows.iter().all(|row| row.iter().skip(33).all(str::is_empty)));
@@ -161,10 +165,11 @@ fn a_run_stops_by_the_rules_of_its_study() {
             "evaluations = 2000\n[optimizer.stagnation]\nevaluations = 200\ngain = 0.2",
         ),
         ("time_up", "evaluations = 100000000\ntime_limit_s = 0.5"),
-        ("completed", "evaluations = 400\nfront_designs = 7"),
+        ("completed", "evaluations = 400"),
     ];
     for (outcome, section) in sections {
-        let text = format!("name = \"{outcome}\"\narchitectures = [\"3-PRR\"]\n[optimizer]\n{section}\n");
+        let text =
+            format!("name = \"{outcome}\"\narchitectures = [\"3-PRR\"]\n[optimizer]\nfront_designs = 7\n{section}\n");
         let study = folder.write("study.toml", text);
         let report = optimize(&study, &folder.join(outcome), &["--no-recording"]);
         assert_eq!(report["outcome"], outcome);

@@ -9,7 +9,7 @@ use super::support::{Folder, design_of, entry, folder, list, number, read_rows, 
 #[test]
 fn a_front_answers_wishes_and_reasons() {
     let folder = folder();
-    let search = "optimize paper --evaluations 300 --out run --no-recording --quiet";
+    let search = "optimize paper --evaluations 300 --front 40 --out run --no-recording --quiet";
     folder.run(search).success();
     let rows = read_rows(&folder.join("run/front.csv"));
     let near = rows.iter().find(|row| {
@@ -105,7 +105,7 @@ fn a_study_without_designs_is_told_what_stands_in_the_way() {
     }
     let told = folder.run("why run/designs.csv --radius 1").code(2);
     told.stderr(says("add --mass"));
-    let search = "optimize --evaluations 60 --no-recording --quiet --out feasible";
+    let search = "optimize --evaluations 60 --front 8 --no-recording --quiet --out feasible";
     folder.run(search).success();
     let told = folder.run("why feasible/designs.csv").code(2);
     told.stderr(says("is feasible, so no requirement"));

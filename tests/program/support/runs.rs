@@ -1,6 +1,6 @@
 //! Runs: small studies, runs that several tests share, and what a run has left.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{BufRead, BufReader};
@@ -177,7 +177,7 @@ pub fn front(out: &Path) -> Vec<TableRow> {
 }
 
 /// A row of a table: its cells by the names of their columns.
-pub type Row = HashMap<String, String>;
+pub type Row = BTreeMap<String, String>;
 
 pub fn read_rows(table: &Path) -> Vec<Row> {
     rows_of(&fs::read(table).unwrap_or_else(|error| panic!("{}: {error}", table.display())))
