@@ -53,7 +53,9 @@ fn a_run_selects_drives_from_a_catalogue() {
     let design = design_of(row);
     let line = |command: &str| format!("{command} --design '{design}' --study study.toml --grid fine");
     let found = folder.json(&(line("evaluate") + " --json"));
-    assert_eq!(number(&found["mass_kg"]).to_string(), row["mass_kg"]);
+    // Reading JSON may change the last bit.
+    let mass = value(row, "mass_kg");
+    assert!((number(&found["mass_kg"]) - mass).abs() <= 4.0 * f64::EPSILON * mass);
     assert_eq!(found["task"]["drive"], drive);
     let mass = found["quantities"]["drive_mass_kg"].to_string().parse::<f64>();
     assert_eq!(mass, row["drive_mass_kg"].parse());
