@@ -26,13 +26,8 @@ fn name(scalar: PoseScalar) -> &'static str {
     }
 }
 
-/// Evaluates a design at poses, whose rows are x, y \[m\] and φ \[rad\].
-pub(crate) fn evaluate<'py>(
-    py: Python<'py>,
-    model: &Model,
-    design: &Design,
-    poses: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyDict>> {
+/// Reads poses, whose rows are x, y \[m\] and φ \[rad\].
+fn read_poses(poses: &Bound<'_, PyAny>) -> PyResult<Vec<Pose>> {
     let poses: PyReadonlyArray2<'_, f64> = contiguous(poses)?
         .extract()
         .map_err(|_| InputError::new_err("expected poses of shape (n, 3): x, y [m] and phi [rad]"))?;
@@ -43,35 +38,34 @@ pub(crate) fn evaluate<'py>(
             given.ncols()
         )));
     }
-    let poses: Vec<Pose> = given
-        .rows()
-        .into_iter()
-        .map(|row| Pose::new(row[0], row[1], row[2]))
+    let rows = given.rows().into_iter();
+    Ok(rows.map(|row| Pose::new(row[0], row[1], row[2])).collect())
+}
+
+/// Returns what a design is at each pose that it reaches, and the margins of its constraints there, row by row.
+fn evaluate_all(model: &Model, design: &Design, poses: &[Pose]) -> (Vec<Option<PoseEvaluation>>, Vec<f64>) {
+    let posed = model.posed(design);
+    let found: Vec<Option<PoseEvaluation>> = poses
+        .par_chunks(CHUNK)
+        .flat_map_iter(|poses| poses.iter().map(|pose| posed.at(pose).ok()))
         .collect();
-    let (found, margins) = py.detach(|| {
-        let posed = model.posed(design);
-        let found: Vec<Option<PoseEvaluation>> = poses
-            .par_chunks(CHUNK)
-            .flat_map_iter(|poses| poses.iter().map(|pose| posed.at(pose).ok()))
-            .collect();
-        let margins: Vec<f64> = found
-            .iter()
-            .flat_map(|found| {
-                found
-                    .as_ref()
-                    .map_or([f64::NAN; Constraint::ALL.len()], |found| posed.margins(found))
-            })
-            .collect();
-        (found, margins)
-    });
+    let none = [f64::NAN; Constraint::ALL.len()];
+    let margins = found.iter();
+    let margins = margins.flat_map(|found| found.as_ref().map_or(none, |found| posed.margins(found)));
+    let margins = margins.collect();
+    (found, margins)
+}
+
+/// Evaluates a design at poses, whose rows are x, y \[m\] and φ \[rad\].
+pub(crate) fn evaluate<'py>(
+    py: Python<'py>,
+    model: &Model,
+    design: &Design,
+    poses: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let poses = read_poses(poses)?;
+    let (found, margins) = py.detach(|| evaluate_all(model, design, &poses));
     let count = found.len();
-    let numbers = |scalar: PoseScalar| -> Vec<f64> {
-        let value = |found: &PoseEvaluation| found.values.get(scalar).unwrap_or(f64::NAN);
-        found
-            .iter()
-            .map(|found| found.as_ref().map_or(f64::NAN, value))
-            .collect()
-    };
     let flat = |width: usize, values: &dyn Fn(&PoseEvaluation, &mut Vec<f64>)| {
         let mut all = Vec::with_capacity(width * count);
         for found in &found {
@@ -87,14 +81,13 @@ pub(crate) fn evaluate<'py>(
     table.set_item("reachable", reached.into_pyarray(py))?;
     let actuators = flat(3, &|found, all| all.extend(found.actuators));
     table.set_item("actuators", matrix(py, actuators, count, 3)?)?;
-    for (name, of) in [("B", true), ("C", false)] {
-        let points = flat(6, &|found, all| {
-            all.extend((if of { found.b } else { found.c }).as_flattened())
-        });
-        table.set_item(name, cube(py, points, count, [3, 2])?)?;
-    }
+    let b = flat(6, &|found, all| all.extend(found.b.as_flattened()));
+    table.set_item("B", cube(py, b, count, [3, 2])?)?;
+    let c = flat(6, &|found, all| all.extend(found.c.as_flattened()));
+    table.set_item("C", cube(py, c, count, [3, 2])?)?;
     for &scalar in PoseScalar::ALL {
-        table.set_item(name(scalar), numbers(scalar).into_pyarray(py))?;
+        let numbers = flat(1, &|found, all| all.push(found.values.get(scalar).unwrap_or(f64::NAN)));
+        table.set_item(name(scalar), numbers.into_pyarray(py))?;
     }
     let stiffness = flat(36, &|found, all| {
         // Row by row, as arrays of NumPy are; the matrix is symmetric but for rounding.

@@ -13,7 +13,7 @@ use kinefront_study::{PreparedStudy, Study};
 use super::numbers::whole_number;
 use super::stream::{InputLine, answer, next_line};
 use super::subject::{DESIGN_OR_STREAM, SubjectArguments, exactly_one_of};
-use super::{Ending, Failure, load_study, tables, to_json};
+use super::{Ending, Failure, load_study, print, tables};
 
 #[derive(Debug, clap::Args)]
 #[command(
@@ -62,13 +62,7 @@ pub fn run(arguments: &CertifyArguments) -> Result<Ending, Failure> {
     }
     let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
     let found = prover(study)?.certify(&design).map_err(Failure::input)?;
-    let mut out = std::io::stdout().lock();
-    if arguments.json {
-        writeln!(out, "{}", to_json(&found).map_err(Failure::Runtime)?)?;
-    } else {
-        writeln!(out, "{}", tables::certificate(&found))?;
-    }
-    Ok(Ending::Done)
+    print(arguments.json.then_some(&found), || tables::certificate(&found))
 }
 
 /// Why a line has no certificate.

@@ -8,8 +8,8 @@ use kinefront_model::mechanism::{Design, TextError};
 use kinefront_study::PreparedStudy;
 
 use super::stream::{answer, next_line};
-use super::subject::{DESIGN_OR_STREAM, SubjectArguments, exactly_one_of};
-use super::{Ending, Failure, GridArgument, load_study, tables, to_json};
+use super::subject::{DESIGN_OR_STREAM, GridArgument, SubjectArguments, exactly_one_of};
+use super::{Ending, Failure, load_study, print, tables};
 
 #[derive(Debug, clap::Args)]
 #[command(group = exactly_one_of(DESIGN_OR_STREAM))]
@@ -42,14 +42,8 @@ pub fn run(arguments: &EvaluateArguments) -> Result<Ending, Failure> {
         .with_all_quantities();
     let model = study.model();
     let evaluation = model.evaluate_in_full(&design, grid);
-    let mut out = std::io::stdout().lock();
-    if arguments.json {
-        let json = EvaluationJson::new(&evaluation, model).with_dynamics(model, &evaluation);
-        writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
-    } else {
-        writeln!(out, "{}", tables::evaluation(&evaluation, model))?;
-    }
-    Ok(Ending::Done)
+    let json = || EvaluationJson::new(&evaluation, model).with_dynamics(model, &evaluation);
+    print(arguments.json.then(json), || tables::evaluation(&evaluation, model))
 }
 
 struct Server {

@@ -40,7 +40,6 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
-use kinefront_model::evaluation::GridChoice;
 use kinefront_recording::{UNPACK_COMMAND, unpack_with};
 use kinefront_study::{BUILTIN, FileScope, Study, is_shown};
 use miette::{IntoDiagnostic, Report, Result, miette};
@@ -372,24 +371,16 @@ fn load_study(argument: Option<&OsStr>) -> Result<Study> {
     Ok(Study::load_within(argument, scope)?)
 }
 
-/// The grid that an argument specifies.
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum GridArgument {
-    /// The grid used in the search.
-    Reference,
-    /// The grid on which reported designs are verified.
-    Fine,
-}
-
-impl From<GridArgument> for GridChoice {
-    fn from(argument: GridArgument) -> Self {
-        match argument {
-            GridArgument::Reference => GridChoice::Reference,
-            GridArgument::Fine => GridChoice::Fine,
-        }
-    }
-}
-
 fn to_json(value: &impl serde::Serialize) -> Result<String> {
     serde_json::to_string(value).into_diagnostic()
+}
+
+/// Prints what a command has found: as one JSON object where that is asked for, otherwise as tables.
+fn print(json: Option<impl serde::Serialize>, tables: impl FnOnce() -> String) -> Result<Ending, Failure> {
+    let text = match json {
+        Some(found) => to_json(&found).map_err(Failure::Runtime)?,
+        None => tables(),
+    };
+    writeln!(std::io::stdout(), "{text}")?;
+    Ok(Ending::Done)
 }

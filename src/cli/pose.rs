@@ -1,15 +1,12 @@
 //! The command `kinefront pose`.
 
-use std::io::Write;
-
-use kinefront_export::AssemblyModesJson;
-use kinefront_export::{DynamicsJson, PoseReportJson};
+use kinefront_export::{AssemblyModesJson, DynamicsJson, PoseReportJson};
 use kinefront_model::dynamics::Motion;
 use kinefront_model::kinematics::assembly_modes;
 use kinefront_model::spatial::{Acceleration, JointValues, Pose, Twist, Wrench};
 
 use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
-use super::{Ending, Failure, tables, to_json};
+use super::{Ending, Failure, print, tables};
 
 #[derive(Debug, clap::Args)]
 #[command(group = exactly_one_of(A_DESIGN))]
@@ -39,18 +36,12 @@ pub struct PoseArguments {
 pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
     let (study, design, _) = arguments.subject.read().map_err(Failure::Input)?;
     let model = study.model().map_err(Failure::runtime)?;
-    let mut out = std::io::stdout().lock();
     let Some(pose) = &arguments.pose else {
         let values = arguments.actuators.as_deref().unwrap_or_default();
         let values: JointValues = values.parse().map_err(Failure::input)?;
         let modes = assembly_modes(&design, &model.settings().legs, values.0);
-        if arguments.json {
-            let json = to_json(&AssemblyModesJson::new(&modes)).map_err(Failure::Runtime)?;
-            writeln!(out, "{json}")?;
-        } else {
-            writeln!(out, "{}", tables::assembly_modes(&design, values.0, &modes))?;
-        }
-        return Ok(Ending::Done);
+        let json = arguments.json.then(|| AssemblyModesJson::new(&modes));
+        return print(json, || tables::assembly_modes(&design, values.0, &modes));
     };
     let pose = pose.parse::<Pose>().map_err(Failure::input)?;
     let wrench = arguments.wrench.as_deref().map(str::parse::<Wrench>).transpose();
@@ -60,17 +51,17 @@ pub fn run(arguments: &PoseArguments) -> Result<Ending, Failure> {
     let strength = posed.strength_at(&pose, wrench).ok().flatten();
     let motion = arguments.motion()?;
     let dynamics = posed.dynamics_at(&pose).ok().flatten();
-    if arguments.json {
-        let dynamics = dynamics.and_then(|dynamics| DynamicsJson::new(&dynamics, motion.as_ref()));
-        let json = PoseReportJson::new(&outcome, strength.as_ref(), dynamics);
-        writeln!(out, "{}", to_json(&json).map_err(Failure::Runtime)?)?;
-    } else {
-        let motion = motion.as_ref();
-        let dynamics = dynamics.map(|dynamics| tables::dynamics(&design, &dynamics, motion));
-        let report = tables::pose(&design, &pose, &outcome, strength.as_ref());
-        writeln!(out, "{report}{}", dynamics.unwrap_or_default())?;
-    }
-    Ok(Ending::Done)
+    let (strength, motion) = (strength.as_ref(), motion.as_ref());
+    let json = arguments.json.then(|| {
+        let dynamics = dynamics.as_ref();
+        let dynamics = dynamics.and_then(|dynamics| DynamicsJson::new(dynamics, motion));
+        PoseReportJson::new(&outcome, strength, dynamics)
+    });
+    print(json, || {
+        let dynamics = dynamics.as_ref();
+        let dynamics = dynamics.map(|dynamics| tables::dynamics(&design, dynamics, motion));
+        tables::pose(&design, &pose, &outcome, strength) + &dynamics.unwrap_or_default()
+    })
 }
 
 impl PoseArguments {

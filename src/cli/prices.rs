@@ -12,7 +12,7 @@ use kinefront_study::{
 use miette::miette;
 
 use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
-use super::{Ending, Failure, exists_already, tables, to_json};
+use super::{Ending, Failure, exists_already, print, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -80,13 +80,9 @@ pub fn run(arguments: &PricesArguments) -> Result<Ending, Failure> {
         wish: arguments.wish_mass,
     };
     let drivers = local.drivers(options).map_err(Failure::input)?;
-    let mut out = std::io::stdout().lock();
-    if arguments.json {
-        writeln!(out, "{}", to_json(&drivers).map_err(Failure::Runtime)?)?;
-    } else {
-        writeln!(out, "{}", tables::drivers(&heading, &drivers))?;
-    }
-    Ok(Ending::Done)
+    print(arguments.json.then_some(&drivers), || {
+        tables::drivers(&heading, &drivers)
+    })
 }
 
 /// Determines the prices of all designs of a table.

@@ -10,7 +10,7 @@ use kinefront_model::mechanism::Design;
 use kinefront_study::{RunFolder, Study, UnlistedValue, is_row_name, named_row, read_designs, read_table, row_names};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
-use super::{GridArgument, load_study, say};
+use super::{load_study, say};
 
 /// The ways to specify a design, of which a command requires one; with the arguments of the command that take its place.
 pub fn exactly_one_of(arguments: &'static [&'static str]) -> ArgGroup {
@@ -22,6 +22,24 @@ pub const A_DESIGN: &[&str] = &["row", "design"];
 
 /// The same for a command that also reads a stream of designs.
 pub const DESIGN_OR_STREAM: &[&str] = &["row", "design", "stdin"];
+
+/// The grid that an argument specifies.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum GridArgument {
+    /// The grid used in the search.
+    Reference,
+    /// The grid on which reported designs are verified.
+    Fine,
+}
+
+impl From<GridArgument> for GridChoice {
+    fn from(argument: GridArgument) -> Self {
+        match argument {
+            GridArgument::Reference => GridChoice::Reference,
+            GridArgument::Fine => GridChoice::Fine,
+        }
+    }
+}
 
 #[derive(Debug, clap::Args)]
 #[group(skip)]

@@ -7,8 +7,8 @@ use kinefront_scene::text;
 use miette::miette;
 use serde::Serialize;
 
-use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
-use super::{Ending, Failure, GridArgument, say, tables, to_json};
+use super::subject::{A_DESIGN, GridArgument, SubjectArguments, exactly_one_of};
+use super::{Ending, Failure, say, tables, to_json};
 
 #[derive(Debug, clap::Args)]
 #[command(

@@ -1,7 +1,6 @@
 //! The command `kinefront why`: why a point beyond the front cannot be had, or why no design is feasible.
 
 use std::ffi::OsString;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use kinefront_model::evaluation::Quantity;
@@ -12,7 +11,7 @@ use miette::{Result, miette};
 
 use super::prices::above_zero;
 use super::subject::{designs_of, study_of, without_designs};
-use super::{Ending, Failure, tables, to_json};
+use super::{Ending, Failure, print, tables};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -56,20 +55,16 @@ pub fn run(arguments: &WhyArguments) -> std::result::Result<Ending, Failure> {
     let designs: Vec<Design> = designs.into_iter().map(|(_, design)| design).collect();
     let problem = DesignProblem::new(&study).map_err(Failure::runtime)?;
     let drivers = problem.why(&designs, &held, mass).map_err(Failure::input)?;
-    let mut out = std::io::stdout().lock();
-    if arguments.json {
-        writeln!(out, "{}", to_json(&drivers).map_err(Failure::Runtime)?)?;
-    } else {
-        let heading = match held.as_slice() {
-            [] => "the best design for the region".to_owned(),
-            held => {
-                let values = held.iter().map(|(quantity, value)| quantity_text(*quantity, *value));
-                format!("the best design for {}", values.collect::<Vec<_>>().join(", "))
-            }
-        };
-        writeln!(out, "{}", tables::drivers(&heading, &drivers))?;
-    }
-    Ok(Ending::Done)
+    let heading = match held.as_slice() {
+        [] => "the best design for the region".to_owned(),
+        held => {
+            let values = held.iter().map(|(quantity, value)| quantity_text(*quantity, *value));
+            format!("the best design for {}", values.collect::<Vec<_>>().join(", "))
+        }
+    };
+    print(arguments.json.then_some(&drivers), || {
+        tables::drivers(&heading, &drivers)
+    })
 }
 
 /// Tells what stands in the way of a study of which no design is feasible.
@@ -79,13 +74,7 @@ fn tell_hindrances(arguments: &WhyArguments, study: &Study) -> std::result::Resu
         return Err(Failure::Input(miette!("{words}")));
     }
     let found = hindrances(&arguments.table, study)?;
-    let mut out = std::io::stdout().lock();
-    if arguments.json {
-        writeln!(out, "{}", to_json(&found).map_err(Failure::Runtime)?)?;
-    } else {
-        writeln!(out, "{}", tables::hindrances(&found))?;
-    }
-    Ok(Ending::Done)
+    print(arguments.json.then_some(&found), || tables::hindrances(&found))
 }
 
 /// Returns what stands in the way of the designs of a table.

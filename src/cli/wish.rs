@@ -1,11 +1,9 @@
 //! The command `kinefront wish`: the nearest design that has what a person wishes.
 
-use std::io::Write;
-
 use kinefront_study::{Condition, DesignProblem, Wish};
 
 use super::subject::{A_DESIGN, SubjectArguments, exactly_one_of};
-use super::{Ending, Failure, tables, to_json};
+use super::{Ending, Failure, print, tables};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -32,13 +30,8 @@ pub fn run(arguments: &WishArguments) -> Result<Ending, Failure> {
     let problem = DesignProblem::new(&study).map_err(Failure::runtime)?;
     let outcome = problem.grant(&design, &wish).map_err(Failure::input)?;
     let shown = wish.shown(&study);
-    let mut out = std::io::stdout().lock();
-    if arguments.json {
-        writeln!(out, "{}", to_json(&outcome.to_json(&shown)).map_err(Failure::Runtime)?)?;
-    } else {
-        writeln!(out, "{}", tables::wish(&heading, &outcome, &shown))?;
-    }
-    Ok(Ending::Done)
+    let json = arguments.json.then(|| outcome.to_json(&shown));
+    print(json, || tables::wish(&heading, &outcome, &shown))
 }
 
 fn read(arguments: &WishArguments) -> Result<Wish, Failure> {

@@ -1,12 +1,10 @@
 //! What the documents and the sources say of each other.
 
-use std::fs;
-
-use super::sources::{files, root};
+use super::sources::{files, read, root};
 
 /// Headings of a document, `2.1 Geometry common to all` as `2.1`.
 fn sections(document: &str) -> Vec<String> {
-    let text = fs::read_to_string(root().join(document)).expect("a document");
+    let text = read(&root().join(document));
     let headings = text.lines().filter(|line| line.starts_with('#'));
     let number = |line: &str| {
         line.trim_start_matches('#')
@@ -28,7 +26,7 @@ fn references_to_the_model_lead_to_its_sections() {
     let mut count = 0;
     for place in ["crates", "python", "src", "tests", "benches", "examples"] {
         for path in files(&root().join(place), "rs") {
-            let text = fs::read_to_string(&path).expect("a source");
+            let text = read(&path);
             if path.ends_with("house/documents.rs") {
                 continue;
             }
@@ -57,62 +55,67 @@ fn references_to_the_model_lead_to_its_sections() {
     assert!(count > 20, "only {count} references");
 }
 
-/// Files that the documents name exist, equations are numbered without gaps, and links between documents lead somewhere.
+/// The documents that users and contributors read.
+fn documents() -> Vec<String> {
+    let at_the_top = "README.md ARCHITECTURE.md CONTRIBUTING.md SECURITY.md python/README.md".split(' ');
+    let folder = root().join("docs");
+    let in_docs = files(&folder, "md")
+        .into_iter()
+        .filter(|path| path.parent() == Some(folder.as_path()));
+    let in_docs = in_docs.map(|path| {
+        let path = path.strip_prefix(root()).expect("a file of the repository");
+        path.to_string_lossy().into_owned()
+    });
+    at_the_top.map(str::to_owned).chain(in_docs).collect()
+}
+
+/// The anchor by which a link leads to a heading.
+fn anchor_of(heading: &str) -> String {
+    let text = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept: String = text
+        .chars()
+        .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-'))
+        .collect();
+    kept.replace(' ', "-")
+}
+
+/// Links between documents lead to a file, and to a heading that it has.
 #[test]
-fn documents_refer_to_what_is_there() {
-    let at_the_top = [
-        "README.md",
-        "ARCHITECTURE.md",
-        "CONTRIBUTING.md",
-        "SECURITY.md",
-        "python/README.md",
-    ]
-    .map(str::to_owned);
-    let in_docs = fs::read_dir(root().join("docs"))
-        .expect("a folder")
-        .filter_map(|entry| {
-            let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
-            name.ends_with(".md").then(|| format!("docs/{name}"))
-        });
-    let documents: Vec<String> = at_the_top.into_iter().chain(in_docs).collect();
+fn links_of_the_documents_lead_somewhere() {
+    let documents = documents();
     assert!(documents.len() > 8, "{documents:?}");
     for document in &documents {
         let path = root().join(document);
-        let text = fs::read_to_string(&path).expect("a document");
+        let text = read(&path);
         for rest in text.split("](").skip(1) {
             let link = rest.split([')', ' ']).next().unwrap_or_default();
             let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
             if file.starts_with("http") {
                 continue;
             }
-            let target = if file.is_empty() {
-                path.clone()
-            } else {
-                path.with_file_name("").join(file)
+            let target = match file {
+                "" => path.clone(),
+                file => path.with_file_name("").join(file),
             };
             assert!(target.exists(), "{document} links to {link}");
             if !anchor.is_empty() {
-                let slug = |line: &str| {
-                    let kept = line.trim_start_matches('#').trim().to_lowercase();
-                    let kept: String = kept
-                        .chars()
-                        .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-'))
-                        .collect();
-                    kept.replace(' ', "-")
-                };
-                let target = fs::read_to_string(&target).expect("a document");
-                let found = target
-                    .lines()
-                    .filter(|line| line.starts_with('#'))
-                    .any(|line| slug(line) == anchor);
-                assert!(found, "{document} links to {link}, which has no such heading");
+                let target = read(&target);
+                let mut headings = target.lines().filter(|line| line.starts_with('#'));
+                let has_heading = headings.any(|line| anchor_of(line) == anchor);
+                assert!(has_heading, "{document} links to {link}, which has no such heading");
             }
         }
-        for word in text.split('`').skip(1).step_by(2) {
-            let is_file = word.contains('/')
-                && [".rs", ".md", ".json", ".py", ".toml"]
-                    .iter()
-                    .any(|end| word.ends_with(end));
+    }
+}
+
+/// Files of the repository that the documents name exist.
+#[test]
+fn documents_refer_to_what_is_there() {
+    for document in documents() {
+        for word in read(&root().join(&document)).split('`').skip(1).step_by(2) {
+            let is_file = [".rs", ".md", ".json", ".py", ".toml"]
+                .iter()
+                .any(|end| word.ends_with(end));
             let is_ours = ["crates/", "src/", "tests/", "docs/", "benches/", "assets/"]
                 .iter()
                 .any(|start| word.starts_with(start));
@@ -121,12 +124,14 @@ fn documents_refer_to_what_is_there() {
             }
         }
     }
-    let model = fs::read_to_string(root().join("docs/model.md")).expect("the model");
-    let tags: Vec<usize> = model
-        .split("\\tag{")
-        .skip(1)
-        .filter_map(|rest| rest.split('}').next()?.parse().ok())
-        .collect();
+}
+
+/// Equations are numbered without gaps.
+#[test]
+fn equations_are_numbered_in_order() {
+    let model = read(&root().join("docs/model.md"));
+    let tags = model.split("\\tag{").skip(1);
+    let tags: Vec<usize> = tags.filter_map(|rest| rest.split('}').next()?.parse().ok()).collect();
     assert_eq!(tags, (1..=tags.len()).collect::<Vec<_>>());
     assert!(tags.len() > 30);
 }
@@ -134,7 +139,7 @@ fn documents_refer_to_what_is_there() {
 /// The contract lists the columns of the tables in their order.
 #[test]
 fn the_interfaces_list_every_column_in_order() {
-    let text = fs::read_to_string(root().join("docs/interfaces.md")).expect("the interfaces");
+    let text = read(&root().join("docs/interfaces.md"));
     let mut rest = text.as_str();
     for column in kinefront_study::Column::of_front(&kinefront_study::Study::default()) {
         let name = format!("`{}`", column.name());

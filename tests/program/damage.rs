@@ -2,24 +2,25 @@
 
 use std::fs::{self, File};
 use std::io::{Read, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::support::{DESIGN, check, folder, kinefront, optimize, repetitions, report, resume, short_study, tables};
+use super::support::{
+    DESIGN, check, copy, folder, kinefront, optimize, read_rows, repair, repetitions, report, resume, said, says,
+    short_run, short_study, tables,
+};
 
 /// The line that ends a table decides: only a last row without its end of line is forgiven, and that is said.
 #[test]
 fn damage_is_never_read_as_less_data() {
     let folder = folder();
-    let study = short_study(folder.path());
-    let run = folder.path().join("run");
-    optimize(&study, &run, &["--evaluations", "120"]);
+    let run = copy(&short_run(&["--evaluations", "120"]), &folder.join("run"));
     let table = run.join("designs.csv");
-    let text = fs::read_to_string(&table).expect("a table");
+    let text = folder.read("run/designs.csv");
     let lines: Vec<&str> = text.lines().collect();
     let joined = |lines: &[&str]| lines.join("\n") + "\n";
     let with = |line: usize, new: &str| {
@@ -58,45 +59,28 @@ fn damage_is_never_read_as_less_data() {
     for (damage, damaged, place) in cases {
         println!("{damage}");
         fs::write(&table, damaged).expect("a table");
-        let page = folder.path().join("page");
-        kinefront()
-            .arg("report")
-            .arg(&run)
-            .arg("--out")
-            .arg(&page)
-            .args(["--quiet", "--sensitivity", "0"])
-            .assert()
-            .code(2)
-            .stderr(contains(place));
+        let told = folder.run("report run --out page --quiet --sensitivity 0").code(2);
+        told.stderr(says(place));
         check(&run).code(2).stdout(contains("designs.csv"));
     }
     fs::write(&table, &text).expect("a table");
     check(&run).success();
+}
 
-    // Cut at any line, the study of the run is not taken for another study.
-    let (study, front) = (run.join("study.toml"), run.join("front.csv"));
-    let text = fs::read_to_string(&study).expect("a study");
-    let id = fs::read_to_string(&front)
-        .expect("a front")
-        .lines()
-        .nth(1)
-        .expect("a design")
-        .split(',')
-        .next()
-        .expect("an id")
-        .to_owned();
+/// Cut at any line, the study of the run is not taken for another study.
+#[test]
+fn a_study_that_was_cut_is_not_that_of_the_run() {
+    let folder = folder();
+    let run = copy(&short_run(&["--evaluations", "120"]), &folder.join("run"));
+    let text = folder.read("run/study.toml");
+    let id = &read_rows(&run.join("front.csv"))[0]["id"];
     for cut in 0..text.lines().count() {
         let part: Vec<&str> = text.lines().take(cut).collect();
-        fs::write(&study, part.join("\n")).expect("a study");
-        kinefront()
-            .arg("export")
-            .arg(format!("{}#{id}", front.display()))
-            .args(["--format", "json", "--out", "-"])
-            .assert()
-            .code(2)
-            .stderr(contains("study.toml").and(contains("not the file of the run")));
+        folder.write("run/study.toml", part.join("\n"));
+        let line = format!("export run/front.csv#{id} --format json --out -");
+        let told = folder.run(&line).code(2);
+        told.stderr(says("study.toml").and(says("not the file of the run")));
     }
-    fs::write(&study, &text).expect("a study");
 }
 
 /// The table of a small run, cut at every byte (by day, at every third one): the run resumes or is refused, and is never another one.
@@ -104,13 +88,12 @@ fn damage_is_never_read_as_less_data() {
 fn a_table_cut_at_every_byte_resumes() {
     use kinefront_study::{ResumeOptions, Resumption};
     let folder = folder();
-    let study = folder.path().join("tiny.toml");
     let text = "name = \"tiny\"\narchitectures = [\"3-PRR\"]\n\
                 [grid.reference]\nphi_step_deg = 10\ndirections = 3\nray_steps = 4\nhalvings = 1\n\
                 [grid.fine]\nphi_step_deg = 10\ndirections = 6\nray_steps = 4\nhalvings = 1\n\
                 [optimizer]\nevaluations = 12\nthreads = 1\nfront_designs = 4\nalgorithm = \"nsga2\"\n[optimizer.nsga2]\npopulation = 4\n";
-    fs::write(&study, text).expect("a study");
-    let (whole, run) = (folder.path().join("whole"), folder.path().join("run"));
+    let study = folder.write("tiny.toml", text);
+    let (whole, run) = (folder.join("whole"), folder.join("run"));
     optimize(&study, &whole, &["--no-recording"]);
     let table = fs::read(whole.join("designs.csv")).expect("a table");
     fs::create_dir(&run).expect("a folder");
@@ -142,131 +125,101 @@ fn a_table_cut_at_every_byte_resumes() {
 #[test]
 fn a_resumed_run_names_what_was_changed() {
     let folder = folder();
-    let study = short_study(folder.path());
-    let run = folder.path().join("run");
-    optimize(&study, &run, &["--evaluations", "300"]);
+    let run = copy(&short_run(&["--evaluations", "300"]), &folder.join("run"));
     // Without the report, checksums are unknown, and only the rows themselves can tell.
-    let report = fs::read_to_string(run.join("run.json")).expect("a report");
+    let report = folder.read("run/run.json");
     let unknown = || fs::remove_file(run.join("run.json")).expect("a report");
     let change = |file: &str, from: &str, to: &str| {
-        let path = run.join(file);
-        let text = fs::read_to_string(&path).expect("a file");
+        let path = format!("run/{file}");
+        let text = folder.read(&path);
         assert!(text.contains(from), "{from}");
-        fs::write(&path, text.replacen(from, to, 1)).expect("a file");
+        folder.write(&path, text.replacen(from, to, 1));
     };
     let more = ["--evaluations", "400", "--accept-unverified"];
     change("study.toml", "seed = 5", "seed = 6");
-    resume(&run, &more)
-        .code(2)
-        .stderr(contains("study.toml").and(contains("checksum")));
+    let told = resume(&run, &more).code(2);
+    told.stderr(says("study.toml").and(says("checksum")));
     unknown();
-    resume(&run, &more)
-        .code(2)
-        .stderr(contains("design #0 does not follow"));
+    let told = resume(&run, &more).code(2);
+    told.stderr(says("design #0 does not follow"));
     change("study.toml", "seed = 6", "seed = 5");
     change("study.toml", "density_kg_per_m3 = 7850.0", "density_kg_per_m3 = 2700.0");
-    resume(&run, &more).code(2).stderr(contains("mass_kg"));
+    resume(&run, &more).code(2).stderr(says("mass_kg"));
     change("study.toml", "density_kg_per_m3 = 2700.0", "density_kg_per_m3 = 7850.0");
-    fs::write(
-        run.join("run.json"),
-        report.replace("\"kinefront_version\": \"", "\"kinefront_version\": \"9"),
-    )
-    .expect("a report");
-    resume(&run, &more).code(2).stderr(contains("written by Kinefront 9"));
-    fs::write(run.join("run.json"), &report[..report.len() / 2]).expect("a report");
-    resume(&run, &more)
-        .code(2)
-        .stderr(contains("run.json").and(contains("damaged")));
+    let version = "\"kinefront_version\": \"";
     // JSON that lacks a key is as damaged as what is not JSON: the checksums would be lost with it.
-    fs::write(run.join("run.json"), report.replace("\"outcome\"", "\"outcomf\"")).expect("a report");
-    resume(&run, &more)
-        .code(2)
-        .stderr(contains("run.json").and(contains("outcome")));
+    let newer = report.replace(version, &format!("{version}9"));
+    for (damaged, file, words) in [
+        (newer, "", "written by Kinefront 9"),
+        (report[..report.len() / 2].to_owned(), "run.json", "damaged"),
+        (report.replace("\"outcome\"", "\"outcomf\""), "run.json", "outcome"),
+    ] {
+        folder.write("run/run.json", damaged);
+        let told = resume(&run, &more).code(2);
+        told.stderr(says(file).and(says(words)));
+    }
     check(&run).code(2);
     // More rows than the study allows.
     unknown();
     change("study.toml", "evaluations = 300", "evaluations = 200");
     resume(&run, &["--accept-unverified"])
         .code(2)
-        .stderr(contains("300 designs").and(contains("200 evaluations")));
+        .stderr(says("300 designs").and(says("200 evaluations")));
     check(&run).code(2);
     change("study.toml", "evaluations = 200", "evaluations = 300");
-    fs::write(run.join("run.json"), &report).expect("a report");
+    folder.write("run/run.json", &report);
     resume(&run, &more).success();
+}
+
+/// Changes a bit of the byte at a place of a file, which is stated as a share of its size.
+fn flip(path: &Path, place: f64) {
+    let mut file = File::options().read(true).write(true).open(path).expect("a file");
+    let at = (place * file.metadata().expect("a size").len() as f64) as u64;
+    let mut byte = [0];
+    file.seek(SeekFrom::Start(at)).expect("a place");
+    file.read_exact(&mut byte).expect("a byte");
+    file.seek(SeekFrom::Start(at)).expect("a place");
+    file.write_all(&[byte[0] ^ 1]).expect("a byte");
 }
 
 /// What follows from the designs is repaired; what was guessed would be is not.
 #[test]
 fn a_folder_is_repaired_where_nothing_is_guessed() {
     let folder = folder();
-    let study = short_study(folder.path());
-    let [whole, run] = ["whole", "run"].map(|name| folder.path().join(name));
-    optimize(&study, &whole, &["--evaluations", "180"]);
-    let copy = |to: &Path| {
-        let _ = fs::remove_dir_all(to);
-        fs::create_dir(to).expect("a folder");
-        for entry in fs::read_dir(&whole).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            fs::copy(&path, to.join(path.file_name().expect("a name"))).expect("a file");
-        }
+    let whole = short_run(&["--evaluations", "180"]);
+    let run = copy(&whole, &folder.join("run"));
+    let again = || {
+        fs::remove_dir_all(&run).expect("a folder");
+        copy(&whole, &run)
     };
-    let flip = |path: PathBuf, place: f64| {
-        let mut file = File::options().read(true).write(true).open(&path).expect("a file");
-        let at = (place * file.metadata().expect("a size").len() as f64) as u64;
-        let mut byte = [0];
-        file.seek(SeekFrom::Start(at)).expect("a place");
-        file.read_exact(&mut byte).expect("a byte");
-        file.seek(SeekFrom::Start(at)).expect("a place");
-        file.write_all(&[byte[0] ^ 1]).expect("a byte");
+    let remove = |path: &Path| fs::remove_file(path).expect("a file");
+    let shorten = |path: &Path| {
+        let file = File::options().write(true).open(path).expect("a file");
+        file.set_len(2000).expect("a shorter file");
     };
-    let damages: [(&str, &dyn Fn()); 6] = [
-        ("front.csv", &|| flip(run.join("front.csv"), 0.5)),
-        ("front.csv", &|| {
-            fs::remove_file(run.join("front.csv")).expect("a front")
-        }),
-        ("recording.rrd", &|| {
-            fs::remove_file(run.join("recording.rrd")).expect("a recording")
-        }),
-        ("recording.rrd", &|| {
-            let file = File::options()
-                .write(true)
-                .open(run.join("recording.rrd"))
-                .expect("a recording");
-            file.set_len(2000).expect("a shorter recording");
-        }),
-        ("run.json", &|| {
-            let text = fs::read_to_string(run.join("run.json")).expect("a report");
-            fs::write(run.join("run.json"), text.replace("\"feasible\": ", "\"feasible\": 1")).expect("a report");
-        }),
-        ("run.json", &|| {
-            let text = fs::read_to_string(run.join("run.json")).expect("a report");
-            fs::write(
-                run.join("run.json"),
-                text.replace("\"front_verified\": ", "\"front_verified\": 9"),
-            )
-            .expect("a report");
-        }),
+    let write = |from: &str, to: &str| {
+        let text = folder.read("run/run.json");
+        folder.write("run/run.json", text.replace(from, to));
+    };
+    let damages: [(&str, &dyn Fn(&Path)); 6] = [
+        ("front.csv", &|path| flip(path, 0.5)),
+        ("front.csv", &remove),
+        ("recording.rrd", &remove),
+        ("recording.rrd", &shorten),
+        ("run.json", &|_| write("\"feasible\": ", "\"feasible\": 1")),
+        ("run.json", &|_| write("\"front_verified\": ", "\"front_verified\": 9")),
     ];
     for (file, damage) in damages {
-        copy(&run);
-        damage();
-        check(&run)
-            .code(2)
-            .stdout(contains(file).and(contains("can be repaired")));
-        kinefront()
-            .arg("check")
-            .arg(&run)
-            .arg("--repair")
-            .assert()
-            .success()
-            .stdout(contains("repaired"));
+        damage(&again().join(file));
+        let told = check(&run).code(2);
+        told.stdout(contains(file).and(contains("can be repaired")));
+        repair(&run).success().stdout(contains("repaired"));
         assert!(tables(&run) == tables(&whole), "{file}");
         assert_eq!(report(&run), report(&whole), "{file}");
     }
-    copy(&run);
-    flip(run.join("designs.csv"), 0.5);
-    kinefront().arg("check").arg(&run).arg("--repair").assert().code(2);
-    check(folder.path()).code(2).stderr(contains("holds no run"));
+    flip(&again().join("designs.csv"), 0.5);
+    repair(&run).code(2);
+    check(folder.path()).code(2).stderr(says("holds no run"));
 }
 
 /// Input of any size is refused in a moment and with little memory.
@@ -274,18 +227,11 @@ fn a_folder_is_repaired_where_nothing_is_guessed() {
 fn input_beyond_measure_is_refused() {
     let folder = folder();
     let refuse = |name: &str, text: &str, words: &str| {
-        let study = folder.path().join(name);
-        fs::write(&study, text).expect("a study");
-        let told = kinefront().args(["study", "check"]).arg(&study).assert().code(2);
-        let said = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
+        folder.write(name, text);
+        let told = folder.run(&format!("study check {name}")).code(2);
+        let said = said(&told);
         assert!(said.len() < 4000, "{name}: {} bytes were said", said.len());
-        // Long lines are broken, with a margin.
-        let joined: String = said
-            .split_whitespace()
-            .filter(|word| *word != "│")
-            .collect::<Vec<_>>()
-            .join(" ");
-        assert!(joined.contains(words), "{name}: {said}");
+        told.stderr(says(words));
     };
     let long = "x".repeat(10_000_000);
     refuse("key.toml", &format!("{long} = 1"), "a study has about 5000");
@@ -330,9 +276,7 @@ fn input_beyond_measure_is_refused() {
 #[test]
 fn a_damaged_recording_does_no_harm() {
     let folder = folder();
-    let study = short_study(folder.path());
-    let run = folder.path().join("run");
-    optimize(&study, &run, &["--evaluations", "60"]);
+    let run = copy(&short_run(&["--evaluations", "60"]), &folder.join("run"));
     let path = run.join("recording.rrd");
     let sound = fs::read(&path).expect("a recording");
     let mut random = ChaCha8Rng::seed_from_u64(1);
@@ -367,47 +311,29 @@ fn any_path_and_a_pipe_will_do() {
     use std::os::unix::ffi::OsStrExt;
     let folder = folder();
     let study = short_study(folder.path());
-    let odd = folder.path().join(std::ffi::OsStr::from_bytes(b"run \xff"));
+    let odd = folder.join(std::ffi::OsStr::from_bytes(b"run \xff"));
     optimize(&study, &odd, &["--evaluations", "60"]);
-    let front = fs::read_to_string(odd.join("front.csv")).expect("a front");
-    let id = front
-        .lines()
-        .nth(1)
-        .and_then(|line| line.split(',').next())
-        .expect("an id");
+    let id = &read_rows(&odd.join("front.csv"))[0]["id"];
     let row = || {
         let mut row = odd.join("front.csv").into_os_string();
         row.push(format!("#{id}"));
         row
     };
-    kinefront()
-        .arg("evaluate")
-        .args(["--design", DESIGN, "--study"])
-        .arg(odd.join("study.toml"))
-        .assert()
-        .success();
-    kinefront()
-        .arg("show")
-        .arg(row())
-        .arg("--record")
-        .arg(odd.join("one.rrd"))
-        .assert()
-        .success();
-    kinefront()
-        .arg("export")
-        .arg(row())
-        .args(["--format", "json", "--out", "-"])
-        .assert()
-        .success();
+    let mut command = kinefront();
+    command.args(["evaluate", "--design", DESIGN, "--study"]);
+    command.arg(odd.join("study.toml")).assert().success();
+    let mut command = kinefront();
+    command.arg("show").arg(row()).arg("--record");
+    command.arg(odd.join("one.rrd")).assert().success();
+    let mut command = kinefront();
+    command.arg("export").arg(row());
+    command.args(["--format", "json", "--out", "-"]).assert().success();
     check(&odd).success();
-    let text = fs::read(&study).expect("a study");
-    kinefront()
-        .args(["optimize", "/dev/stdin", "--evaluations", "60", "--quiet", "--out"])
-        .arg(folder.path().join("piped"))
-        .write_stdin(text)
-        .assert()
-        .success();
-    assert!(tables(&folder.path().join("piped")) == tables(&odd));
+    let mut command = kinefront();
+    command.args(["optimize", "/dev/stdin", "--evaluations", "60", "--quiet", "--out"]);
+    let piped = command.arg(folder.join("piped")).write_stdin(folder.read("small.toml"));
+    piped.assert().success();
+    assert!(tables(&folder.join("piped")) == tables(&odd));
 }
 
 /// What a process that was killed leaves behind blocks nothing.
@@ -416,34 +342,21 @@ fn remains_block_nothing() {
     let folder = folder();
     let study = short_study(folder.path());
     // A start that was killed after the first lines of its table.
-    let run = folder.path().join("run");
+    let run = folder.join("run");
     fs::create_dir(&run).expect("a folder");
     for header in ["", "id,generation,arch"] {
-        fs::write(run.join("designs.csv"), header).expect("a table");
-        kinefront()
-            .arg("report")
-            .arg(&run)
-            .assert()
-            .code(2)
-            .stderr(contains("holds no run"));
-        resume(&run, &[]).code(2).stderr(contains("holds no run"));
+        folder.write("run/designs.csv", header);
+        let told = folder.run("report run").code(2);
+        told.stderr(says("holds no run"));
+        resume(&run, &[]).code(2).stderr(says("holds no run"));
     }
     optimize(&study, &run, &["--evaluations", "60"]);
     check(&run).success();
     // A table of someone else is no remains.
-    let other = folder.path().join("other");
-    fs::create_dir(&other).expect("a folder");
-    fs::write(other.join("designs.csv"), "id,generation\n0,1\n").expect("a table");
-    kinefront()
-        .arg("optimize")
-        .arg(&study)
-        .arg("--out")
-        .arg(&other)
-        .assert()
-        .code(2)
-        .stderr(contains("designs.csv"));
-    assert_eq!(
-        fs::read_to_string(other.join("designs.csv")).expect("a table"),
-        "id,generation\n0,1\n"
-    );
+    fs::create_dir(folder.join("other")).expect("a folder");
+    let table = "id,generation\n0,1\n";
+    folder.write("other/designs.csv", table);
+    let told = folder.run("optimize small.toml --out other").code(2);
+    told.stderr(says("designs.csv"));
+    assert_eq!(folder.read("other/designs.csv"), table);
 }

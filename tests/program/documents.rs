@@ -2,18 +2,28 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::process::Command;
 
-use super::support::{folder, is_thorough, kinefront, optimize, python, small_study};
+use serde_json::Value;
+
+use super::support::{
+    Folder, folder, is_thorough, kinefront, number, python, read_rows, run, said, small_study, value, words,
+};
 
 fn document(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-fn printed(arguments: &[&str]) -> String {
-    let told = kinefront().args(arguments).assert().success();
+/// Returns what a command line of the program prints in a folder.
+fn printed_in(folder: &Folder, line: &str) -> String {
+    let told = folder.run(line).success();
     String::from_utf8(told.get_output().stdout.clone()).expect("UTF-8")
+}
+
+fn printed(line: &str) -> String {
+    printed_in(&folder(), line)
 }
 
 /// The commands of `kinefront` in the shell blocks of a document, without comments.
@@ -44,24 +54,20 @@ fn the_reference_of_keys_is_current() {
         .expect("the mark of what the program prints");
     assert_eq!(
         reference,
-        printed(&["study", "keys"]),
+        printed("study keys"),
         "write the output of `kinefront study keys` behind the mark in docs/study.md"
     );
 }
 
 /// The tables of the documents that follow from commands are what the commands print, and so are the listings of the tutorial, whose
-/// commands all run in an empty folder. By day, without those of longer searches.
+/// commands all run in an empty folder. By day, without those of searches.
 #[test]
 fn the_tables_of_the_documents_are_current() {
     let Some(mut python) = python(&["json"]) else { return };
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/make.py");
     let tutorial = commands(&document("docs/tutorial.md"));
     assert!(tutorial.len() >= 9, "{tutorial:?}");
-    let names: &[&str] = if is_thorough() {
-        &[]
-    } else {
-        &["published", "studies", "tutorial"]
-    };
+    let names: &[&str] = if is_thorough() { &[] } else { &["published", "studies"] };
     let program = ["--check", "--program", env!("CARGO_BIN_EXE_kinefront")];
     let output = python
         .arg(script)
@@ -76,39 +82,23 @@ fn the_tables_of_the_documents_are_current() {
 /// A part of a key leads to its section, and an unknown one is an error.
 #[test]
 fn keys_are_found_by_a_part() {
-    let found = printed(&["study", "keys", "clearance"]);
+    let found = printed("study keys clearance");
     assert!(
         found.contains("`clearance_min_m`") && found.contains("`clearance_m`"),
         "{found}"
     );
     assert!(!found.contains("density_kg_per_m3"), "{found}");
-    let told = kinefront().args(["study", "keys", "torsion"]).assert().code(2);
-    assert!(String::from_utf8_lossy(&told.get_output().stderr).contains("torsion"));
+    assert!(said(&run("study keys torsion").code(2)).contains("torsion"));
 }
 
-/// Splits a command line at its spaces; quotation marks hold words together.
-fn words(line: &str) -> Vec<String> {
-    let mut words = Vec::new();
-    let mut quoted = false;
-    let mut word = String::new();
-    for letter in line.chars() {
-        match letter {
-            '"' => quoted = !quoted,
-            ' ' if !quoted => words.extend((!word.is_empty()).then(|| std::mem::take(&mut word))),
-            other => word.push(other),
-        }
-    }
-    words.extend((!word.is_empty()).then_some(word));
-    words
-}
-
-/// The commands of the other documents have the options that the program has: each is tried with an option that it cannot have, which is
-/// then the first that it complains about.
+/// The commands of the documents have the options that the program has: each is tried with an option that it cannot have, which is then
+/// the first that it complains about.
 #[test]
 fn commands_of_the_documents_are_known() {
     let mut count = 0;
     for name in [
         "README.md",
+        "docs/tutorial.md",
         "docs/howto.md",
         "docs/exports.md",
         "docs/troubleshooting.md",
@@ -124,8 +114,7 @@ fn commands_of_the_documents_are_known() {
             let mut arguments = words(&command);
             arguments.remove(0);
             arguments.push("--no-such-option".to_owned());
-            let told = kinefront().args(&arguments).assert().code(2);
-            let said = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
+            let said = said(&kinefront().args(&arguments).assert().code(2));
             assert!(said.contains("'--no-such-option'"), "{name}: {command}\n{said}");
             count += 1;
         }
@@ -137,65 +126,48 @@ fn commands_of_the_documents_are_known() {
 #[test]
 fn designs_are_found_by_their_names() {
     let folder = folder();
-    let run = folder.path().join("run");
-    optimize(
-        &small_study(folder.path()),
-        &run,
-        &["--evaluations", "200", "--no-recording"],
-    );
-    let text = fs::read_to_string(run.join("front.csv")).expect("a front");
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let headers = reader.headers().expect("a header").clone();
-    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
-    let place = |name: &str| headers.iter().position(|header| header == name).expect("a column");
-    let evaluated = |name: &str| {
-        let row = run.join(format!("front.csv#{name}"));
-        printed(&["evaluate", row.to_str().expect("UTF-8"), "--grid", "fine", "--json"])
-    };
+    small_study(folder.path());
+    let search = "optimize small.toml --out run --evaluations 200 --no-recording --quiet";
+    folder.run(search).success();
+    let rows = read_rows(&folder.join("run/front.csv"));
+    let evaluated = |name: &str| printed_in(&folder, &format!("evaluate run/front.csv#{name} --grid fine --json"));
     for name in ["lightest", "knee", "largest"] {
-        let row = rows.iter().find(|row| &row[place("mark")] == name).expect("a mark");
-        assert_eq!(evaluated(name), evaluated(&row[place("id")]), "{name}");
+        let row = rows.iter().find(|row| row["mark"] == name).expect("a mark");
+        assert_eq!(evaluated(name), evaluated(&row["id"]), "{name}");
     }
     assert_eq!(evaluated("best"), evaluated("lightest"));
-    let mass = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect("JSON")["mass_kg"].as_f64();
-    let least = rows
-        .iter()
-        .filter_map(|row| row[place("mass_kg")].parse::<f64>().ok())
-        .min_by(f64::total_cmp);
-    assert!((mass(&evaluated("best")).expect("a mass") / least.expect("a row") - 1.0).abs() < 1e-12);
+    let best: Value = serde_json::from_str(&evaluated("best")).expect("JSON");
+    let masses = rows.iter().map(|row| value(row, "mass_kg"));
+    let least = masses.min_by(f64::total_cmp).expect("a row");
+    assert!((number(&best["mass_kg"]) / least - 1.0).abs() < 1e-12);
     // The table of all designs has the same names.
     for name in ["best", "knee", "largest"] {
-        let row = run.join(format!("designs.csv#{name}"));
-        for command in ["evaluate", "certify"] {
-            printed(&[command, row.to_str().expect("UTF-8")]);
+        for (command, more) in [
+            ("evaluate", ""),
+            ("certify", ""),
+            ("pose", "--pose 'x=0 y=0 phi_deg=30' --json"),
+        ] {
+            folder
+                .run(&format!("{command} run/designs.csv#{name} {more}"))
+                .success();
         }
-        let pose = ["--pose", "x=0 y=0 phi_deg=30", "--json"];
-        printed(&[&["pose", row.to_str().expect("UTF-8")], &pose[..]].concat());
     }
-    let told = kinefront()
-        .arg("evaluate")
-        .arg(run.join("front.csv#heaviest"))
-        .assert()
-        .code(2);
-    let said = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
-    assert!(
-        said.contains("#heaviest") && said.contains("#knee") && said.contains("#lightest"),
-        "{said}"
-    );
+    let said = said(&folder.run("evaluate run/front.csv#heaviest").code(2));
+    for name in ["#heaviest", "#knee", "#lightest"] {
+        assert!(said.contains(name), "{said}");
+    }
 }
 
 /// Each command has a manual page, which names its options, and no page replaces a file.
 #[test]
 fn manual_pages_name_every_command() {
     let folder = folder();
-    let pages = folder.path().join("man");
-    let argument = pages.to_str().expect("UTF-8");
-    printed(&["manual", argument]);
-    let found: BTreeSet<String> = fs::read_dir(&pages)
+    folder.run("manual man").success();
+    let found: BTreeSet<String> = fs::read_dir(folder.join("man"))
         .expect("a folder")
         .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
         .collect();
-    let help = printed(&["--help"]);
+    let help = printed("--help");
     let commands: Vec<&str> = help
         .split("Commands:")
         .nth(1)
@@ -213,24 +185,22 @@ fn manual_pages_name_every_command() {
         );
     }
     assert!(found.contains("kinefront-study-new.1"), "{found:?}");
-    let page = fs::read_to_string(pages.join("kinefront-optimize.1")).expect("a page");
+    let page = folder.read("man/kinefront-optimize.1");
     assert!(page.contains(".TH ") && page.contains("\\-\\-resume"), "{page}");
-    kinefront().args(["manual", argument]).assert().code(2);
-    let file = pages.join("kinefront.1");
-    let told = kinefront().arg("manual").arg(&file).assert().code(2);
-    assert!(String::from_utf8_lossy(&told.get_output().stderr).contains("is not a folder"));
+    folder.run("manual man").code(2);
+    let told = folder.run("manual man/kinefront.1").code(2);
+    assert!(said(&told).contains("is not a folder"));
 }
 
 /// Scripts for shells complete the commands; bash accepts its own.
 #[test]
 fn completions_are_scripts() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        assert!(printed(&["completions", shell]).contains("optimize"), "{shell}");
+        assert!(printed(&format!("completions {shell}")).contains("optimize"), "{shell}");
     }
     let folder = folder();
-    let script: PathBuf = folder.path().join("kinefront.bash");
-    fs::write(&script, printed(&["completions", "bash"])).expect("written");
-    if let Ok(status) = std::process::Command::new("bash").arg("-n").arg(&script).status() {
+    let script = folder.write("kinefront.bash", printed("completions bash"));
+    if let Ok(status) = Command::new("bash").arg("-n").arg(&script).status() {
         assert!(status.success());
     }
 }
@@ -238,7 +208,7 @@ fn completions_are_scripts() {
 /// The version says which build it is.
 #[test]
 fn the_version_names_the_build() {
-    let version = printed(&["--version"]);
+    let version = printed("--version");
     let window = match cfg!(feature = "explorer") {
         true => "with the window",
         false => "without a window",

@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use predicates::str::contains;
 use serde_json::Value;
 
-use super::support::{DESIGN, folder, json, kinefront, node, optimize, python, sample, script, small_study};
+use super::support::{
+    DESIGN, Folder, folder, json, list, node, number, parsed, python, read_rows, run, sample, says, script_json,
+    small_run,
+};
 
 /// A design of each of the paper's architectures, with the stiffness of its actuators.
 pub const DESIGNS: [(&str, f64); 3] = [
@@ -33,20 +36,43 @@ pub const OTHERS: [&str; 15] = [
     "3-PR_R R=1.09 r=0.78 Lb=1.61 rj=0.058 rp=0.051",
 ];
 
-/// Exports a design to `NAME.EXTENSION` in `folder`; the format follows from the extension.
-fn export(design: &str, folder: &Path, name: &str) -> PathBuf {
-    let path = folder.join(name);
-    kinefront()
-        .args(["export", "--design", design, "--out"])
-        .arg(&path)
-        .assert()
-        .success()
-        .stdout(contains("wrote"));
-    path
+/// Exports a design to a file in `folder`; the format follows from the extension.
+fn export(design: &str, folder: &Folder, name: &str) -> PathBuf {
+    let told = folder
+        .run(&format!("export --design '{design}' --out {name}"))
+        .success();
+    told.stdout(contains("wrote"));
+    folder.join(name)
 }
 
 fn read_json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
+}
+
+/// Checks that MuJoCo moves the exported mechanism of a design along its tour with the loops closed, and returns what it found with the
+/// exported JSON.
+fn moves_along_its_tour(folder: &Folder, design: &str, most_added_kg: f64) -> (Value, Value) {
+    let name = design.split(' ').next().expect("a name");
+    let file = |extension: &str| export(design, folder, &format!("{name}.{extension}"));
+    let (model, json, urdf) = (file("xml"), file("json"), file("urdf"));
+    let python = python(&["mujoco", "numpy"]).expect("Python, which was found before");
+    let found = script_json(python, "mujoco_tour.py", &[&model, &json, &urdf]);
+    let exported = read_json(&json);
+    let evaluation = &exported["evaluation"];
+    assert!(number(&found["farthest_m"]) < 1e-4, "{design}: {found}");
+    assert!(number(&found["turned_rad"]) < 1e-4, "{design}: {found}");
+    // With the controls of 0 that MuJoCo begins with, it stays where it was exported.
+    assert!(number(&found["drift"]) < 1e-5, "{design}: {found}");
+    // The platform did travel to the rim.
+    let radius = number(&evaluation["workspace_radius_m"]);
+    assert!(number(&found["travelled_m"]) > 0.9 * radius, "{design}: {found}");
+    let counts = [&found["closures"], &found["actuators"], &found["warnings"]];
+    assert_eq!(counts, [3, 3, 0], "{design}");
+    for key in ["mass_kg", "urdf_mass_kg"] {
+        let more = number(&found[key]) - number(&evaluation["mass_kg"]);
+        assert!((-1e-6..most_added_kg).contains(&more), "{design}: {more} kg too much");
+    }
+    (found, exported)
 }
 
 #[test]
@@ -54,31 +80,12 @@ fn mujoco_follows_the_tour_with_the_loops_closed() {
     let Some(_) = python(&["mujoco", "numpy"]) else { return };
     let folder = folder();
     std::thread::scope(|scope| {
-        for (index, (design, stiffness)) in DESIGNS.into_iter().enumerate() {
-            let folder = folder.path();
+        for (design, stiffness) in DESIGNS {
+            let folder = &folder;
             scope.spawn(move || {
-                let file = |extension: &str| export(design, folder, &format!("{index}.{extension}"));
-                let (model, json, urdf) = (file("xml"), file("json"), file("urdf"));
-                let python = python(&["mujoco", "numpy"]).expect("Python, which was found before");
-                let found: Value =
-                    serde_json::from_str(&script(python, "mujoco_tour.py", &[&model, &json, &urdf])).expect("JSON");
-                let evaluation = &read_json(&json)["evaluation"];
-                let number = |value: &Value| value.as_f64().expect("a number");
-                let radius = number(&evaluation["workspace_radius_m"]);
-                assert!(number(&found["farthest_m"]) < 1e-4, "{design}: {found}");
-                assert!(number(&found["turned_rad"]) < 1e-4, "{design}: {found}");
-                // With the controls of 0 that MuJoCo begins with, it stays where it was exported.
-                assert!(number(&found["drift"]) < 1e-5, "{design}: {found}");
-                // The platform did travel to the rim.
-                assert!(number(&found["travelled_m"]) > 0.9 * radius, "{design}: {found}");
-                assert_eq!([&found["closures"], &found["actuators"], &found["warnings"]], [3, 3, 0]);
-                assert_eq!(found["stiffness"], serde_json::json!([stiffness, stiffness, stiffness]));
                 // Each slider has a mass of one gram.
-                let mass = number(&evaluation["mass_kg"]);
-                for key in ["mass_kg", "urdf_mass_kg"] {
-                    let more = number(&found[key]) - mass;
-                    assert!((-1e-6..0.003_001).contains(&more), "{design}: {more} kg too much");
-                }
+                let (found, _) = moves_along_its_tour(folder, design, 0.003_001);
+                assert_eq!(found["stiffness"], serde_json::json!([stiffness, stiffness, stiffness]));
                 // There are two joints per leg, and the one platform joint that is not cut.
                 assert_eq!(found["urdf_joints"], 7);
             });
@@ -92,46 +99,23 @@ fn mujoco_follows_the_tour_with_the_loops_closed() {
 fn mujoco_moves_every_other_architecture() {
     let Some(_) = python(&["mujoco", "numpy"]) else { return };
     let folder = folder();
-    let check = |design: &str| {
-        let name = design.split(' ').next().expect("a name");
-        let file = |extension: &str| export(design, folder.path(), &format!("{name}.{extension}"));
-        let (model, json, urdf) = (file("xml"), file("json"), file("urdf"));
-        let python = python(&["mujoco", "numpy"]).expect("Python, which was found before");
-        let found: Value =
-            serde_json::from_str(&script(python, "mujoco_tour.py", &[&model, &json, &urdf])).expect("JSON");
-        let exported = read_json(&json);
-        let number = |value: &Value| value.as_f64().expect("a number");
-        assert!(number(&found["farthest_m"]) < 1e-4, "{design}: {found}");
-        assert!(number(&found["turned_rad"]) < 1e-4, "{design}: {found}");
-        assert!(number(&found["drift"]) < 1e-5, "{design}: {found}");
-        let radius = number(&exported["evaluation"]["workspace_radius_m"]);
-        assert!(number(&found["travelled_m"]) > 0.9 * radius, "{design}: {found}");
-        assert_eq!(
-            [&found["closures"], &found["actuators"], &found["warnings"]],
-            [3, 3, 0],
-            "{design}"
-        );
-        let mass = number(&exported["evaluation"]["mass_kg"]);
+    for design in sample(OTHERS.iter(), 2) {
         // Each slider and each carriage without mass has one gram.
-        for key in ["mass_kg", "urdf_mass_kg"] {
-            let more = number(&found[key]) - mass;
-            assert!((-1e-6..0.006_001).contains(&more), "{design}: {more} kg too much");
-        }
+        let (found, exported) = moves_along_its_tour(&folder, design, 0.006_001);
         // One joint per body but the platform, and that at C_1 unless the platform is fixed there.
-        let bodies = exported["bodies"].as_array().expect("bodies").len() as u64 - 1;
+        let bodies = list(&exported["bodies"]).len() as u64 - 1;
         let is_fixed = exported["closures"][0]["rigid"].as_bool().expect("a flag");
         assert_eq!(found["urdf_joints"], bodies + u64::from(!is_fixed), "{design}");
-    };
-    sample(OTHERS.iter(), 2).for_each(|design| check(design));
+    }
 }
 
 #[test]
 fn gltf_passes_the_validator() {
     let folder = folder();
-    let designs = DESIGNS.iter().map(|(design, _)| *design).chain(OTHERS);
-    let files: Vec<PathBuf> = designs
+    let designs: Vec<&str> = DESIGNS.iter().map(|(design, _)| *design).chain(OTHERS).collect();
+    let files: Vec<PathBuf> = sample(designs.into_iter(), 6)
         .enumerate()
-        .map(|(index, design)| export(design, folder.path(), &format!("{index}.glb")))
+        .map(|(index, design)| export(design, &folder, &format!("{index}.glb")))
         .collect();
     let Some(mut node) = node("gltf-validator") else { return };
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/node/validate_gltf.js");
@@ -139,11 +123,8 @@ fn gltf_passes_the_validator() {
     let found: Vec<Value> = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(found.len(), files.len());
     for file in &found {
-        assert_eq!(
-            [&file["errors"], &file["warnings"], &file["hints"]],
-            [0, 0, 0],
-            "{file}"
-        );
+        let faults = [&file["errors"], &file["warnings"], &file["hints"]];
+        assert_eq!(faults, [0, 0, 0], "{file}");
         assert_eq!(file["info"]["animationCount"], 1);
         // The meshes are those of three legs, a platform and the base.
         assert!(file["info"]["totalTriangleCount"].as_u64().expect("a count") > 1000);
@@ -153,57 +134,52 @@ fn gltf_passes_the_validator() {
 #[test]
 fn plan_view_and_front_are_read_back() {
     let folder = folder();
-    let run = folder.path().join("run");
-    optimize(&small_study(folder.path()), &run, &[]);
-    let parquet = folder.path().join("front.parquet");
-    let csv = folder.path().join("front.csv");
-    for out in [&parquet, &csv] {
-        kinefront()
-            .arg("export")
-            .arg(&run)
-            .arg("--out")
-            .arg(out)
-            .assert()
+    let run = small_run();
+    let [parquet, csv] = ["parquet", "csv"].map(|extension| {
+        let name = format!("front.{extension}");
+        folder
+            .run(&format!("export '{}' --out {name}", run.display()))
             .success();
-    }
-    assert_eq!(
-        std::fs::read(&csv).expect("a table"),
-        std::fs::read(run.join("front.csv")).expect("a table")
-    );
-    let files = ["dxf", "glb", "json"].map(|extension| format!("design.{extension}"));
-    let [drawing, glb, json] = files.map(|name| export(DESIGN, folder.path(), &name));
+        folder.join(name)
+    });
+    let [exported, written] = [&csv, &run.join("front.csv")].map(|table| std::fs::read(table).expect("a table"));
+    assert_eq!(exported, written);
+    let [drawing, glb, json] =
+        ["dxf", "glb", "json"].map(|extension| export(DESIGN, &folder, &format!("design.{extension}")));
     let Some(python) = python(&["ezdxf", "pyarrow"]) else {
         return;
     };
-    let found: Value = serde_json::from_str(&script(
-        python,
-        "read_exports.py",
-        &[&drawing, &parquet, &csv, &glb, &json],
-    ))
-    .expect("JSON");
+    let found = script_json(python, "read_exports.py", &[&drawing, &parquet, &csv, &glb, &json]);
     // The tolerance is that of single precision over a few metres; no joint opens at any step of the animation.
     let animation = &found["animation"];
     assert_eq!([&animation["bodies"], &animation["steps"]], [7, 235]);
     for key in ["from_tour_m", "gap_m"] {
-        assert!(animation[key].as_f64().expect("m") < 2e-6, "{animation}");
+        assert!(number(&animation[key]) < 2e-6, "{animation}");
     }
+    shows_design_ii(&found);
+    assert_eq!(found["differing"], serde_json::json!([]));
+    assert!(found["rows"].as_u64().expect("a count") > 5);
+    let types = ["id", "architecture", "mass_kg", "feasible"].map(|column| &found["types"][column]);
+    assert_eq!(types, ["int64", "string", "double", "bool"]);
+}
+
+/// Checks what was found in the plan view of design II.
+fn shows_design_ii(found: &Value) {
     assert_eq!(found["faults"], 0);
     assert_eq!(found["release"], "R12");
-    let notes = found["notes"].as_array().expect("notes");
+    let notes = list(&found["notes"]);
     for note in ["lengths in mm, scale 1:1", "round 72.0", "platform bar"] {
         assert!(notes.iter().any(|found| found == note), "{note}: {notes:?}");
     }
     // The base, the position of the slider, the link and the platform bar of design II; each dimension shows itself.
-    let dimensions = found["dimensions"].as_array().expect("dimensions");
+    let dimensions = list(&found["dimensions"]);
     let shown = serde_json::json!(["LINE", "LINE", "LINE", "SOLID", "SOLID", "TEXT"]);
     for dimension in dimensions {
-        let measured = dimension["measured"].as_f64().expect("a number");
+        let measured = number(&dimension["measured"]);
         assert_eq!(dimension["text"], format!("{measured:.1}"), "{dimension}");
         assert_eq!(dimension["override"], "", "{dimension}");
-        assert_eq!(
-            (&dimension["shown"], &dimension["style"]),
-            (&shown, &serde_json::json!(true))
-        );
+        assert_eq!(dimension["shown"], shown);
+        assert_eq!(dimension["style"], true);
     }
     let texts: Vec<&str> = dimensions.iter().filter_map(|found| found["text"].as_str()).collect();
     assert_eq!(
@@ -212,50 +188,29 @@ fn plan_view_and_front_are_read_back() {
         "{texts:?}"
     );
     // The outlines are three links with L_b and 2 r_j of design II, and its three sliders.
-    let links: Vec<&Value> = found["legs_mm"].as_array().expect("bars").iter().collect();
-    let near = |value: &Value, wanted: f64| (value.as_f64().expect("a number") - wanted).abs() < 1e-9;
+    let links = list(&found["legs_mm"]);
+    let near = |value: &Value, wanted: f64| (number(value) - wanted).abs() < 1e-9;
     let bars = links.iter().filter(|bar| near(&bar[0], 72.0) && near(&bar[1], 1896.0));
     assert_eq!((bars.count(), links.len()), (3, 6));
-    assert!((found["workspace_mm"][0].as_f64().expect("a circle") - 1221.1).abs() < 0.1);
+    assert!((number(&found["workspace_mm"][0]) - 1221.1).abs() < 0.1);
     assert_eq!(
         found["labels"],
         serde_json::json!(["A1", "A2", "A3", "B1", "B2", "B3", "C1", "C2", "C3", "O", "P"])
     );
-    assert_eq!(found["differing"], serde_json::json!([]));
-    assert!(found["rows"].as_u64().expect("a count") > 5);
-    let types = &found["types"];
-    assert_eq!(
-        [
-            &types["id"],
-            &types["architecture"],
-            &types["mass_kg"],
-            &types["feasible"]
-        ],
-        ["int64", "string", "double", "bool"]
-    );
 }
 
-/// A small mechanism with thin bars is exported, and a working mode with two consecutive minus signs, which would end
-/// an XML comment.
 /// A prescribed polygon is exported as it is, not as the disc within it.
 #[test]
 fn a_prescribed_rectangle_is_exported_with_its_corners() {
     let folder = folder();
-    let study = folder.path().join("table.toml");
     let text = "objectives = [{ minimize = \"mass_kg\" }]\n\
                 workspace.region = { kind = \"rectangle\", width_m = 0.6, height_m = 0.4 }\n";
-    std::fs::write(&study, text).expect("a study");
+    folder.write("table.toml", text);
     let written = |name: &str| {
-        let path = folder.path().join(name);
         let design = "3-PRR R=1.6 r=0.35 Lb=1.2 rj=0.04 rp=0.05";
-        kinefront()
-            .args(["export", "--design", design, "--study"])
-            .arg(&study)
-            .arg("--out")
-            .arg(&path)
-            .assert()
-            .success();
-        std::fs::read(path).expect("a file")
+        let line = format!("export --design '{design}' --study table.toml --out {name}");
+        folder.run(&line).success();
+        std::fs::read(folder.join(name)).expect("a file")
     };
     let drawing = String::from_utf8(written("table.dxf")).expect("text");
     let lines: Vec<&str> = drawing.lines().map(str::trim).collect();
@@ -273,11 +228,13 @@ fn a_prescribed_rectangle_is_exported_with_its_corners() {
     assert!(text.contains("regular_workspace"));
 }
 
+/// A small mechanism with thin bars is exported, and a working mode with two consecutive minus signs, which would end
+/// an XML comment.
 #[test]
 fn small_mechanisms_and_other_working_modes_are_exported() {
     let folder = folder();
     let small = "3-RRR R=0.02 r=0.006 Lb=0.016 rj=0.00005 rp=0.00005 mode=---";
-    let text = std::fs::read_to_string(export(small, folder.path(), "small.xml")).expect("a model");
+    let text = std::fs::read_to_string(export(small, &folder, "small.xml")).expect("a model");
     let title = text
         .split("<!-- ")
         .nth(1)
@@ -298,145 +255,94 @@ fn small_mechanisms_and_other_working_modes_are_exported() {
 #[test]
 fn json_holds_the_design() {
     let folder = folder();
-    let file = read_json(&export(DESIGN, folder.path(), "design.json"));
-    assert_eq!(
-        file["evaluation"],
-        json(["evaluate", "--design", DESIGN, "--grid", "fine", "--json"])
-    );
+    let file = read_json(&export(DESIGN, &folder, "design.json"));
+    let evaluation = json(&format!("evaluate --design '{DESIGN}' --grid fine --json"));
+    assert_eq!(file["evaluation"], evaluation);
     let pose = &file["tour"][40];
     let text = format!("x={} y={} phi_deg={}", pose["x_m"], pose["y_m"], pose["phi_deg"]);
-    let there = json(["pose", "--design", DESIGN, "--pose", &text, "--json"]);
+    let there = json(&format!("pose --design '{DESIGN}' --pose '{text}' --json"));
     for leg in 0..3 {
-        let difference = there["actuators"][leg].as_f64().expect("m") - pose["actuators"][leg].as_f64().expect("m");
+        let difference = number(&there["actuators"][leg]) - number(&pose["actuators"][leg]);
         assert!(difference.abs() < 1e-12);
     }
-    let bodies = file["bodies"].as_array().expect("bodies");
-    let names: Vec<&str> = bodies
-        .iter()
-        .map(|body| body["name"].as_str().expect("a name"))
-        .collect();
+    let bodies = list(&file["bodies"]);
+    let names: Vec<&str> = bodies.iter().filter_map(|body| body["name"].as_str()).collect();
     assert_eq!(names[..2], ["leg1_slider", "leg1_link"]);
     assert_eq!(names[6..], ["platform"]);
-    let mass: f64 = bodies.iter().map(|body| body["mass_kg"].as_f64().expect("kg")).sum();
-    assert!((mass - file["evaluation"]["mass_kg"].as_f64().expect("kg")).abs() < 1e-9);
+    let mass: f64 = bodies.iter().map(|body| number(&body["mass_kg"])).sum();
+    assert!((mass - number(&evaluation["mass_kg"])).abs() < 1e-9);
 }
 
-/// An export at a given pose works. Errors say what is wrong; a failed export leaves no file and overwrites none.
+/// Errors say what is wrong; a failed export leaves no file and overwrites none.
 #[test]
 fn exports_say_what_is_wrong() {
     let folder = folder();
-    let out = folder.path().join("design.sdf");
-    let fails = |arguments: &[&str], words: &str| {
-        kinefront()
-            .arg("export")
-            .args(arguments)
-            .arg("--out")
-            .arg(&out)
-            .assert()
-            .code(2)
-            .stderr(contains(words));
-        assert!(!out.exists(), "{words}");
-    };
-    fails(
-        &["--design", DESIGN, "--pose", "x=9 y=0 phi_deg=0"],
-        "leg 1: prismatic joint",
+    let own = format!("--design '{DESIGN}'");
+    let without_bars = own.replace("rj=0.036", "rj=0");
+    for (subject, more, words) in [
+        (&*own, "--pose 'x=9 y=0 phi_deg=0'", "leg 1: prismatic joint"),
+        (&without_bars, "", "radius 0"),
+        (
+            &own,
+            "--format iges",
+            "expected one of gltf, mjcf, sdf, urdf, dxf, json, csv-parts, step, csv-trajectory, csv, parquet",
+        ),
+        (&own, "--format parquet", "specify the run folder"),
+        ("run/front.csv#1", "--format csv", "specify the run folder"),
+        ("run", "--format csv --pose 'x=0 y=0 phi_deg=0'", "do not apply"),
+        ("nowhere", "--format csv", "nowhere: cannot read the table"),
+    ] {
+        let told = folder.run(&format!("export {subject} {more} --out design.sdf")).code(2);
+        told.stderr(says(words));
+        assert!(!folder.join("design.sdf").exists(), "{words}");
+    }
+    folder.write("design.sdf", "mine");
+    for (more, words) in [
+        ("--format gltf --out design.gltf", ".glb"),
+        ("--out design", "give --format"),
+        ("--out design.sdf", "already exists"),
+    ] {
+        folder.run(&format!("export {own} {more}")).code(2).stderr(says(words));
+    }
+    assert_eq!(folder.read("design.sdf"), "mine");
+}
+
+/// What a format cannot represent is stated in the file and on standard error.
+#[test]
+fn exports_say_what_they_lack() {
+    let folder = folder();
+    let line = format!("export --design '{DESIGN}' --pose 'x=0.1 y=0 phi_deg=25' --format urdf --out design.urdf");
+    folder.run(&line).success().stderr(says("the closed loops"));
+    assert!(
+        folder
+            .read("design.urdf")
+            .contains("Not in this file: the closed loops")
     );
-    fails(&["--design", &DESIGN.replace("rj=0.036", "rj=0")], "radius 0");
-    fails(
-        &["--design", DESIGN, "--format", "iges"],
-        "expected one of gltf, mjcf, sdf, urdf, dxf, json, csv-parts, step, csv-trajectory, csv, parquet",
-    );
-    fails(&["--design", DESIGN, "--format", "parquet"], "specify the run folder");
-    fails(&["run/front.csv#1", "--format", "csv"], "specify the run folder");
-    fails(
-        &["run", "--format", "csv", "--pose", "x=0 y=0 phi_deg=0"],
-        "do not apply",
-    );
-    fails(&["nowhere", "--format", "csv"], "nowhere: cannot read the table");
-    kinefront()
-        .args(["export", "--design", DESIGN, "--format", "gltf", "--out"])
-        .arg(folder.path().join("design.gltf"))
-        .assert()
-        .code(2)
-        .stderr(contains(".glb"));
-    let nameless = folder.path().join("design");
-    kinefront()
-        .args(["export", "--design", DESIGN, "--out"])
-        .arg(&nameless)
-        .assert()
-        .code(2)
-        .stderr(contains("give --format"));
-    std::fs::write(&out, "mine").expect("a file");
-    kinefront()
-        .args(["export", "--design", DESIGN, "--out"])
-        .arg(&out)
-        .assert()
-        .code(2)
-        .stderr(contains("already exists"));
-    assert_eq!(std::fs::read_to_string(&out).expect("a file"), "mine");
-    // What a format cannot represent is stated in the file and on standard error.
-    kinefront()
-        .args([
-            "export",
-            "--design",
-            DESIGN,
-            "--pose",
-            "x=0.1 y=0 phi_deg=25",
-            "--format",
-            "urdf",
-            "--out",
-        ])
-        .arg(folder.path().join("design.urdf"))
-        .assert()
-        .success()
-        .stderr(contains("the closed loops"));
-    let urdf = std::fs::read_to_string(folder.path().join("design.urdf")).expect("a file");
-    assert!(urdf.contains("Not in this file: the closed loops"));
-    kinefront()
-        .args(["export", "--design", DESIGN, "--format", "json", "--out", "-"])
-        .assert()
-        .success()
-        .stdout(contains("\"leg1_slider\""));
+    let told = run(&format!("export --design '{DESIGN}' --format json --out -")).success();
+    told.stdout(contains("\"leg1_slider\""));
 }
 
 /// A table made by another program, and a table under another study than its own.
 #[test]
 fn a_design_of_any_table_is_read() {
     let folder = folder();
-    let table = folder.path().join("mine.csv");
     let text = "id,architecture,working_mode,R,r,Lb,rj,rp\n7,3-PRR,+++,3.066,1.283,1.896,0.036,0.056\n";
-    std::fs::write(&table, text).expect("a table");
-    let export = |table: &Path, id: &str, study: &[&str], name: &str| {
-        let path = folder.path().join(name);
-        kinefront()
-            .arg("export")
-            .arg(format!("{}#{id}", table.display()))
-            .args(study)
-            .arg("--out")
-            .arg(&path)
-            .assert()
-            .success();
-        let text = std::fs::read(path).expect("a file");
-        serde_json::from_slice::<Value>(&text).expect("JSON")
+    folder.write("mine.csv", text);
+    let evaluation = |row: &str| {
+        let told = folder.run(&format!("export {row} --format json --out -")).success();
+        parsed(&told)["evaluation"].clone()
     };
-    let found = export(&table, "7", &[], "seven.json");
-    assert_eq!(
-        found["evaluation"]["design"],
-        json(["evaluate", "--json", "--design", DESIGN])["design"]
-    );
+    let design = json(&format!("evaluate --json --design '{DESIGN}'"));
+    assert_eq!(evaluation("mine.csv#7")["design"], design["design"]);
 
     // The table of the run has no column for the clearance, which the other study requires.
-    let out = folder.path().join("run");
-    optimize(&small_study(folder.path()), &out, &[]);
-    let front = out.join("front.csv");
-    let mut reader = csv::Reader::from_path(&front).expect("a table");
-    let row = reader.records().next().expect("a row").expect("a row");
-    let other = ["--study", "paper-without-collisions"];
-    let [own, other] = [(&[][..], "own.json"), (&other, "other.json")]
-        .map(|(study, name)| export(&front, &row[0], study, name)["evaluation"].clone());
+    let front = small_run().join("front.csv");
+    let row = format!("'{}#{}'", front.display(), read_rows(&front)[0]["id"]);
+    let own = evaluation(&row);
+    let other = evaluation(&format!("{row} --study paper-without-collisions"));
     assert_eq!(own["design"], other["design"]);
     let has_clearance = |evaluation: &Value| {
-        let constraints = evaluation["constraints"].as_array().expect("an array");
+        let constraints = list(&evaluation["constraints"]);
         constraints.iter().any(|constraint| constraint["id"] == "g7")
     };
     assert!(!has_clearance(&own) && has_clearance(&other));

@@ -2,10 +2,10 @@
 
 use std::fs::{self, File};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 use std::time::Instant;
 
-use super::support::{folder, optimize, program, sample, short_study, tables, wait_for};
+use super::support::{folder, program, sample, short_run, short_study, tables, wait_for, words};
 
 /// A run whose folder is removed, moved or truncated ends and says so, and leaves no gap in its table.
 #[cfg(unix)]
@@ -28,7 +28,7 @@ fn a_run_notices_that_its_folder_is_gone() {
         }),
     ];
     for (name, fault) in faults {
-        let run = folder.path().join(name);
+        let run = folder.join(name);
         let child = program()
             .arg("optimize")
             .arg(&study)
@@ -54,30 +54,29 @@ fn a_run_notices_that_its_folder_is_gone() {
     }
 }
 
+/// Runs a script that may mount file systems, which nobody else sees.
+fn in_mounts(script: &str) -> Output {
+    let mut command = Command::new("unshare");
+    command.args(["-rm", "sh", "-ec", script]);
+    command.env("KINEFRONT", env!("CARGO_BIN_EXE_kinefront"));
+    command.env_remove("RERUN").env("NO_COLOR", "1");
+    command.output().expect("unshare runs")
+}
+
 /// A full disk costs the recording first, then ends the run, which prints its front, loses no row, and resumes when there
 /// is space.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_costs_no_design() {
-    let inside = |script: &str| {
-        Command::new("unshare")
-            .args(["-rm", "sh", "-ec", script])
-            .env("KINEFRONT", env!("CARGO_BIN_EXE_kinefront"))
-            .env_remove("RERUN")
-            .env("NO_COLOR", "1")
-            .output()
-            .expect("unshare runs")
-    };
-    if !inside("mount -t tmpfs none /mnt").status.success() {
+    if !in_mounts("mount -t tmpfs none /mnt").status.success() {
         eprintln!("skipped: a small file system cannot be mounted here");
         return;
     }
     let folder = folder();
     let study = short_study(folder.path());
-    let whole = folder.path().join("whole");
-    optimize(&study, &whole, &["--evaluations", "900"]);
+    let whole = short_run(&["--evaluations", "900"]);
     for kib in sample([8, 16, 40, 120, 200, 300, 400, 440, 480, 600, 2000, 6000].iter(), 4) {
-        let kept = folder.path().join(format!("kept{kib}"));
+        let kept = folder.join(format!("kept{kib}"));
         // Whether it fails or not, the run ends in good order; then there is space, and it is resumed.
         let script = format!(
             "mount -t tmpfs -o size={kib}k none /mnt; mkdir /mnt/other; code=0; \
@@ -89,25 +88,20 @@ fn a_full_disk_costs_no_design() {
              else \"$KINEFRONT\" optimize {study} --evaluations 900 --out /mnt/run --quiet; fi; \
              \"$KINEFRONT\" check /mnt/run; cp -r /mnt/run {kept}",
             study = study.display(),
-            out = folder.path().join("out").display(),
-            err = folder.path().join("err").display(),
+            out = folder.join("out").display(),
+            err = folder.join("err").display(),
             kept = kept.display(),
         );
-        let output = inside(&script);
+        let output = in_mounts(&script);
         let said = format!(
             "{}{}",
             String::from_utf8_lossy(&output.stdout),
             String::from_utf8_lossy(&output.stderr)
         );
         assert!(output.status.success(), "{kib} KiB: {said}");
-        let code: i32 = said
-            .lines()
-            .find_map(|line| line.strip_prefix("code "))
-            .expect("a code")
-            .parse()
-            .expect("a number");
-        let told = fs::read_to_string(folder.path().join("err")).expect("what was said");
-        let answer = fs::read_to_string(folder.path().join("out")).expect("an answer");
+        let code = said.lines().find_map(|line| line.strip_prefix("code "));
+        let code: i32 = code.expect("a code").parse().expect("a number");
+        let (told, answer) = (folder.read("err"), folder.read("out"));
         let before = kept.with_extension("before");
         if before.exists() {
             // What was on the full disk is a beginning of the whole table.
@@ -138,26 +132,12 @@ fn a_full_disk_costs_no_design() {
 fn a_run_makes_no_attempt_to_reach_a_network() {
     let folder = folder();
     let study = short_study(folder.path());
-    let [whole, run] = ["whole", "run"].map(|name| folder.path().join(name));
-    let log = folder.path().join("calls");
-    optimize(&study, &whole, &["--evaluations", "90"]);
-    let traced = Command::new("unshare")
-        .args([
-            "-rn",
-            "strace",
-            "-f",
-            "-qq",
-            "-e",
-            "trace=socket,connect,bind,listen",
-            "-o",
-        ])
-        .arg(&log)
-        .arg(env!("CARGO_BIN_EXE_kinefront"))
-        .arg("optimize")
-        .arg(&study)
-        .args(["--evaluations", "90", "--quiet", "--out"])
-        .arg(&run)
-        .output();
+    let (run, log) = (folder.join("run"), folder.join("calls"));
+    let mut command = Command::new("unshare");
+    command.args(words("-rn strace -f -qq -e trace=socket,connect,bind,listen -o"));
+    command.arg(&log).arg(env!("CARGO_BIN_EXE_kinefront"));
+    command.args(["optimize", "--evaluations", "90", "--quiet", "--out"]);
+    let traced = command.arg(&run).arg(&study).output();
     let Ok(traced) = traced else {
         eprintln!("skipped: there is no unshare");
         return;
@@ -169,35 +149,21 @@ fn a_run_makes_no_attempt_to_reach_a_network() {
     assert!(traced.status.success(), "{}", String::from_utf8_lossy(&traced.stderr));
     let calls = fs::read_to_string(&log).expect("a log");
     assert!(!calls.contains("AF_INET"), "{calls}");
-    assert!(tables(&run) == tables(&whole));
+    assert!(tables(&run) == tables(&short_run(&["--evaluations", "90"])));
 }
 
 /// A report that is replaced is there at every instant, the old page or the new one.
 #[test]
 fn a_report_is_replaced_at_once() {
     let folder = folder();
-    let study = short_study(folder.path());
-    let (run, page) = (folder.path().join("run"), folder.path().join("page"));
-    optimize(&study, &run, &["--evaluations", "120", "--no-recording"]);
+    let (run, page) = (short_run(&["--evaluations", "120"]), folder.join("page"));
     let replace = || {
         let mut command = program();
-        command
-            .arg("report")
-            .arg(&run)
-            .arg("--out")
-            .arg(&page)
-            .args([
-                "--replace",
-                "--quiet",
-                "--sensitivity",
-                "0",
-                "--picture-width",
-                "160",
-                "--scale",
-                "0.25",
-            ])
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
+        command.arg("report").arg(&run).arg("--out").arg(&page);
+        command.args(words(
+            "--replace --quiet --sensitivity 0 --picture-width 160 --scale 0.25",
+        ));
+        command.stdout(Stdio::null()).stderr(Stdio::null());
         command
     };
     let since = Instant::now();
@@ -225,22 +191,15 @@ fn a_report_is_replaced_at_once() {
 fn files_are_synchronised_before_they_appear() {
     let folder = folder();
     let study = short_study(folder.path());
-    let (run, log) = (folder.path().join("run"), folder.path().join("calls"));
-    let traced = Command::new("strace")
-        .args([
-            "-f",
-            "-qq",
-            "-e",
-            "trace=openat,fsync,fdatasync,rename,renameat,renameat2,write",
-            "-o",
-        ])
+    let (run, log) = (folder.join("run"), folder.join("calls"));
+    let mut command = Command::new("strace");
+    let traced = "-f -qq -e trace=openat,fsync,fdatasync,rename,renameat,renameat2,write -o";
+    command
+        .args(words(traced))
         .arg(&log)
-        .arg(env!("CARGO_BIN_EXE_kinefront"))
-        .arg("optimize")
-        .arg(&study)
-        .args(["--evaluations", "90", "--quiet", "--no-recording", "--out"])
-        .arg(&run)
-        .output();
+        .arg(env!("CARGO_BIN_EXE_kinefront"));
+    command.args(words("optimize --evaluations 90 --quiet --no-recording --out"));
+    let traced = command.arg(&run).arg(&study).output();
     if traced.is_err() || !log.exists() {
         eprintln!("skipped: there is no strace");
         return;

@@ -4,15 +4,20 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use super::support::{
-    check, folder, is_thorough, kinefront, optimize, repetitions, resume, sample, short_study, tables,
+    Folder, check, copy, folder, is_thorough, kinefront, optimize, prepared, repetitions, resume, sample, short_study,
+    tables, words,
 };
 
 /// Calls that ask for memory.
 const MEMORY: &str = "mmap";
+
+/// Calls of which a command makes dozens; of the others it makes a few.
+const FREQUENT: [&str; 3] = ["openat", "write", MEMORY];
 
 /// Calls that a run makes to its files and for its memory and threads, with the error that each fails with in turn.
 const CALLS: [(&str, &[&str]); 10] = [
@@ -31,73 +36,41 @@ const CALLS: [(&str, &[&str]); 10] = [
 /// A command to disturb, on a copy of a run in the folder.
 struct Scenario {
     name: &'static str,
-    arguments: fn(&Path, &Path) -> Vec<PathBuf>,
+    /// Its command line; `run` is the copy, `other` another run, and `new` does not exist.
+    line: &'static str,
     /// Whether the command works in the run folder, which then has to be resumed or repaired.
     changes_run: bool,
-}
-
-fn paths<const N: usize>(arguments: [&str; N]) -> Vec<PathBuf> {
-    arguments.map(PathBuf::from).to_vec()
 }
 
 const SCENARIOS: [Scenario; 6] = [
     Scenario {
         name: "optimize",
-        arguments: |folder, _| {
-            let mut all = paths(["optimize", "--evaluations", "90", "--no-recording", "--quiet"]);
-            all.extend([folder.join("small.toml"), "--out".into(), folder.join("new")]);
-            all
-        },
+        line: "optimize --evaluations 90 --no-recording --quiet small.toml --out new",
         changes_run: false,
     },
     Scenario {
         name: "resume",
-        arguments: |_, run| {
-            let mut all = paths(["optimize", "--evaluations", "120", "--no-recording", "--quiet"]);
-            all.extend(["--resume".into(), run.to_owned()]);
-            all
-        },
+        line: "optimize --evaluations 120 --no-recording --quiet --resume run",
         changes_run: true,
     },
     Scenario {
         name: "repair",
-        arguments: |_, run| {
-            let front = run.join("front.csv");
-            let text = fs::read(&front).expect("a front");
-            fs::write(&front, &text[..text.len() / 2]).expect("a front");
-            vec!["check".into(), "--repair".into(), run.to_owned()]
-        },
+        line: "check --repair run",
         changes_run: true,
     },
     Scenario {
         name: "merge",
-        arguments: |folder, run| {
-            let mut all = paths(["merge", "--no-recording", "--quiet", "--out"]);
-            all.extend([folder.join("new"), run.to_owned(), folder.join("other")]);
-            all
-        },
+        line: "merge --no-recording --quiet --out new run other",
         changes_run: false,
     },
     Scenario {
         name: "report",
-        arguments: |folder, run| {
-            let mut all = paths([
-                "report",
-                "--quiet",
-                "--picture-width",
-                "160",
-                "--scale",
-                "0.25",
-                "--out",
-            ]);
-            all.extend([folder.join("new"), run.to_owned()]);
-            all
-        },
+        line: "report --quiet --picture-width 160 --scale 0.25 --out new run",
         changes_run: false,
     },
     Scenario {
         name: "export",
-        arguments: |folder, run| vec!["export".into(), run.to_owned(), "--out".into(), folder.join("new.csv")],
+        line: "export run --out new.csv",
         changes_run: false,
     },
 ];
@@ -124,7 +97,7 @@ fn calls_of_start(calls: &str) -> usize {
 }
 
 /// Runs the program with the `when`-th of the calls failing.
-fn disturb(arguments: &[PathBuf], calls: &str, error: &str, when: usize) -> (Output, bool) {
+fn disturb(folder: &Folder, arguments: &[String], calls: &str, error: &str, when: usize) -> (Output, bool) {
     let log = tempfile::NamedTempFile::new().expect("a file");
     let output = Command::new("strace")
         .args(["-f", "-qq", "--seccomp-bpf", "-o"])
@@ -133,6 +106,7 @@ fn disturb(arguments: &[PathBuf], calls: &str, error: &str, when: usize) -> (Out
         .args(["-e", &format!("inject={calls}:error={error}:when={when}")])
         .arg(env!("CARGO_BIN_EXE_kinefront"))
         .args(arguments)
+        .current_dir(folder.path())
         .env_remove("RERUN")
         .env("NO_COLOR", "1")
         .output()
@@ -143,7 +117,7 @@ fn disturb(arguments: &[PathBuf], calls: &str, error: &str, when: usize) -> (Out
 
 /// Runs that commands are disturbed on.
 struct Ground {
-    folder: tempfile::TempDir,
+    folder: Folder,
     study: PathBuf,
     /// Tables of the run that copies are made of, and of the same run with more evaluations.
     kept: [Vec<u8>; 3],
@@ -154,43 +128,39 @@ impl Ground {
     fn new() -> Self {
         let folder = folder();
         let study = study_of_few(folder.path());
+        let text = folder.read("small.toml");
         let make = |name: &str, more: &[&str]| {
-            let out = folder.path().join(name);
-            optimize(&study, &out, &[more, &["--no-recording"]].concat());
-            tables(&out)
+            let run = prepared(&text, &[more, &["--no-recording"][..]].concat());
+            tables(&copy(&run, &folder.join(name)))
         };
         let kept = make("whole", &["--evaluations", "90"]);
         let extended = make("longer", &["--evaluations", "120"]);
         make("other", &["--evaluations", "90", "--seed", "9"]);
-        let ground = Self {
+        Self {
             study,
             kept,
             extended,
             folder,
-        };
-        // What is disturbed does its work when it is not.
-        for scenario in &SCENARIOS {
-            kinefront().args(ground.prepare(scenario)).assert().success();
         }
-        ground
     }
 
     fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
+        self.folder.join(name)
     }
 
     /// Copies the run, removes what an earlier command made, and returns the arguments of a command.
-    fn prepare(&self, scenario: &Scenario) -> Vec<PathBuf> {
+    fn prepare(&self, scenario: &Scenario) -> Vec<String> {
         let run = self.path("run");
         for path in [&self.path("new"), &run] {
             let _ = fs::remove_dir_all(path);
         }
         let _ = fs::remove_file(self.path("new.csv"));
-        fs::create_dir(&run).expect("a folder");
-        for name in ["study.toml", "designs.csv", "front.csv", "run.json"] {
-            fs::copy(self.path("whole").join(name), run.join(name)).expect("a copy");
+        copy(&self.path("whole"), &run);
+        if scenario.name == "repair" {
+            let front = self.folder.read("run/front.csv");
+            self.folder.write("run/front.csv", &front[..front.len() / 2]);
         }
-        (scenario.arguments)(self.folder.path(), &run)
+        words(scenario.line)
     }
 
     /// Checks what a disturbed command has said and left: it has not panicked, no design is lost, and what it changed can be completed to
@@ -222,6 +192,32 @@ impl Ground {
     }
 }
 
+/// What is disturbed does its work when it is not.
+#[test]
+fn undisturbed_commands_succeed() {
+    let ground = Ground::new();
+    for scenario in &SCENARIOS {
+        let mut command = kinefront();
+        command.current_dir(ground.folder.path());
+        command.args(ground.prepare(scenario)).assert().success();
+    }
+}
+
+/// Returns which of the calls fail in turn: where tests are thorough, all until there are no more. By day, one of each second kind of
+/// call, another for each command.
+fn calls_to_fail(scenario: usize, kind: usize) -> Range<usize> {
+    let place = CALLS.len() * scenario + kind;
+    let is_frequent = FREQUENT.contains(&CALLS[kind].0);
+    let one = if is_frequent { 4 + place % 17 } else { 1 + place % 3 };
+    // A report takes seconds.
+    let is_of_night = (scenario + kind / 2) % 2 == 1 || SCENARIOS[scenario].name == "report" && place % 3 != 0;
+    match is_thorough() {
+        true => 1..10_000,
+        false if is_of_night => 0..0,
+        false => one..one + 1,
+    }
+}
+
 #[test]
 fn every_call_fails_once() {
     if Command::new("strace").arg("-V").output().is_err() {
@@ -229,28 +225,19 @@ fn every_call_fails_once() {
         return;
     }
     let ground = Ground::new();
-    let cases: Vec<_> = SCENARIOS
-        .iter()
-        .flat_map(|scenario| CALLS.iter().map(move |(calls, errors)| (scenario, *calls, *errors)))
-        .collect();
     let (mut injected, mut table) = (0, BTreeMap::new());
-    for (place, (scenario, calls, errors)) in cases.into_iter().enumerate() {
-        // All calls until there are no more, or one of them, another for each kind of call. A report takes seconds.
-        let one = if place % 2 == 0 { 1 + place % 3 } else { 4 + place % 17 };
+    let places = (0..SCENARIOS.len()).flat_map(|scenario| (0..CALLS.len()).map(move |kind| (scenario, kind)));
+    for (place, kind) in places {
+        let (scenario, (calls, errors)) = (&SCENARIOS[place], CALLS[kind]);
         // A loader without memory ends by a signal.
         let start = match calls == MEMORY {
             true => calls_of_start(calls),
             false => 0,
         };
-        let times = match is_thorough() {
-            true => 1..10_000,
-            false if scenario.name == "report" && place % 3 != 0 => continue,
-            false => one..one + 1,
-        };
-        for when in times.map(|when| start + when) {
+        for when in calls_to_fail(place, kind).map(|when| start + when) {
             let error = errors[when % errors.len()];
             let arguments = ground.prepare(scenario);
-            let (output, fired) = disturb(&arguments, calls, error, when);
+            let (output, fired) = disturb(&ground.folder, &arguments, calls, error, when);
             if !fired {
                 break;
             }
@@ -266,13 +253,14 @@ fn every_call_fails_once() {
     for ((scenario, calls), count) in table {
         println!("| {scenario} | {calls} | {count} |");
     }
-    assert!(injected > 15, "only {injected} calls failed");
+    assert!(injected > 10, "only {injected} calls failed");
 }
 
 /// Runs the program with a limit of its address space \[KiB\]. With one heap for all threads, an allocation fails where the memory ends.
-fn limited(space: usize, arguments: &[PathBuf]) -> Output {
+fn limited(space: usize, folder: &Folder, arguments: &[String]) -> Output {
     let mut command = Command::new("sh");
     command
+        .current_dir(folder.path())
         .args(["-c", &format!("ulimit -v {space} && exec \"$0\" \"$@\"")])
         .arg(env!("CARGO_BIN_EXE_kinefront"))
         .args(arguments)
@@ -283,11 +271,11 @@ fn limited(space: usize, arguments: &[PathBuf]) -> Output {
 }
 
 /// Returns the least address space with which the program starts \[KiB\]; below, its loader ends by a signal.
-fn space_of_start() -> usize {
+fn space_of_start(folder: &Folder) -> usize {
     let (mut low, mut high) = (10_000, 4_000_000);
     while high - low > 500 {
         let middle = usize::midpoint(low, high);
-        if limited(middle, &["--version".into()]).status.success() {
+        if limited(middle, folder, &["--version".to_owned()]).status.success() {
             high = middle;
         } else {
             low = middle;
@@ -300,7 +288,7 @@ fn space_of_start() -> usize {
 #[test]
 fn little_memory_ends_a_command_in_good_order() {
     let ground = Ground::new();
-    let least = space_of_start();
+    let least = space_of_start(&ground.folder);
     let mut codes = BTreeMap::new();
     // A report takes seconds.
     let scenarios = SCENARIOS
@@ -310,8 +298,8 @@ fn little_memory_ends_a_command_in_good_order() {
         for step in sample(0..repetitions(24, 60), 5) {
             let mut arguments = ground.prepare(scenario);
             // Recordings need most of the memory.
-            arguments.retain(|argument| argument != Path::new("--no-recording"));
-            let output = limited(least + 2000 * step, &arguments);
+            arguments.retain(|argument| argument != "--no-recording");
+            let output = limited(least + 2000 * step, &ground.folder, &arguments);
             *codes.entry(output.status.code()).or_insert(0) += 1;
             ground.examine(scenario, &output, &format!("{} MB more than to start", 2 * step));
         }
@@ -326,12 +314,6 @@ fn complete(study: &Path, run: &Path) {
     if run.join("study.toml").exists() {
         resume(run, &["--no-recording"]).success();
     } else {
-        kinefront()
-            .args(["optimize", "--evaluations", "90", "--no-recording", "--quiet"])
-            .arg(study)
-            .arg("--out")
-            .arg(run)
-            .assert()
-            .success();
+        optimize(study, run, &["--evaluations", "90", "--no-recording"]);
     }
 }

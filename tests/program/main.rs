@@ -17,12 +17,15 @@ mod injected;
 mod merging;
 mod motion;
 mod outside;
+mod reach;
 mod recordings;
 mod regions;
 mod reports;
 mod runs;
+mod selected_drives;
 mod strength;
 mod support;
 mod survival;
 #[cfg(feature = "explorer")]
 mod window;
+mod wishes;

@@ -4,7 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use super::support::{DESIGN, check, folder, kinefront, optimize, small_study};
+use serde_json::Value;
+
+use super::support::{DESIGN, Folder, check, folder, json, list, number, optimize, parsed, repair, says, small_study};
 
 /// Lines of a table without its first columns, which number its rows.
 fn designs(run: &Path) -> Vec<String> {
@@ -16,172 +18,120 @@ fn designs(run: &Path) -> Vec<String> {
     lines.collect()
 }
 
+/// What a search and the end of its run have found.
+fn hypervolumes(report: &Value) -> [f64; 2] {
+    ["hypervolume_kg_m", "verified_hypervolume_kg_m"].map(|key| number(&report[key]))
+}
+
+fn read_report(run: &Path) -> Value {
+    serde_json::from_slice(&fs::read(run.join("run.json")).expect("run.json")).expect("JSON")
+}
+
 #[test]
 fn runs_of_several_seeds_become_one_whose_front_is_no_worse() {
     let folder = folder();
     let study = small_study(folder.path());
-    let place = |name: &str| folder.path().join(name);
-    let reports = [1, 2, 3].map(|seed| {
-        let seed = seed.to_string();
-        optimize(
-            &study,
-            &place(&format!("run {seed}")),
-            &[
-                "--seed",
-                &seed,
-                "--evaluations",
-                "300",
-                "--front",
-                "40",
-                "--no-recording",
-            ],
-        )
+    let more = ["--evaluations", "300", "--front", "40", "--no-recording", "--seed"];
+    let reports = ["1", "2", "3"].map(|seed| {
+        let run = folder.join(format!("run {seed}"));
+        optimize(&study, &run, &[&more[..], &[seed]].concat())
     });
-    let out = place("merged");
-    let merge = |runs: &[&str], out: &Path, more: &[&str]| {
-        let mut command = kinefront();
-        command
-            .arg("merge")
-            .args(runs.iter().map(|run| place(run)))
-            .arg("--out")
-            .arg(out)
-            .args(more);
-        command
-    };
-    let told = merge(&["run 1", "run 2", "run 3"], &out, &["--json"])
-        .assert()
-        .success();
-    let merged: serde_json::Value = serde_json::from_slice(&told.get_output().stdout).expect("run.json");
+    let told = folder.run("merge 'run 1' 'run 2' 'run 3' --out merged --json");
+    let merged = parsed(&told.success());
     assert_eq!(merged["evaluations"], 900);
     assert_eq!(merged["outcome"], "completed");
-    let hypervolume = |report: &serde_json::Value| report["verified_hypervolume_kg_m"].as_f64().expect("a number");
-    let of_the_search = |report: &serde_json::Value| report["hypervolume_kg_m"].as_f64().expect("a number");
-    for report in &reports {
-        assert!(of_the_search(&merged) >= of_the_search(report));
+    let [of_the_search, verified] = hypervolumes(&merged);
+    for report in reports.iter().map(hypervolumes) {
+        assert!(of_the_search >= report[0]);
         // Of few designs, it matters where the last one before the reference point happens to lie.
-        assert!(hypervolume(&merged) >= 0.995 * hypervolume(report));
+        assert!(verified >= 0.995 * report[1]);
     }
-    let sources: Vec<(&str, u64)> = merged["merged"]
-        .as_array()
-        .expect("the runs")
-        .iter()
-        .map(|run| {
-            (
-                run["run"].as_str().expect("a name"),
-                run["seed"].as_u64().expect("a seed"),
-            )
-        })
-        .collect();
-    assert_eq!(sources, [("run 1", 1), ("run 2", 2), ("run 3", 3)]);
+    let sources = list(&merged["merged"]).iter();
+    let sources: Vec<_> = sources.map(|run| (run["run"].as_str(), run["seed"].as_u64())).collect();
+    let names = ["run 1", "run 2", "run 3"];
+    assert_eq!(
+        sources,
+        [1, 2, 3].map(|seed| (Some(names[seed - 1]), Some(seed as u64)))
+    );
 
     // Every design is there, and `origins.csv` leads back to its run.
-    let runs = ["run 1", "run 2", "run 3"].map(|run| designs(&place(run)));
+    let out = folder.join("merged");
+    let runs = names.map(|run| designs(&folder.join(run)));
     let all = designs(&out);
     assert_eq!(all.len(), 900);
     let mut reader = csv::Reader::from_path(out.join("origins.csv")).expect("the origins");
     for (id, record) in reader.records().enumerate() {
         let record = record.expect("a row");
         assert_eq!(record[0], id.to_string());
-        let run = sources.iter().position(|(name, _)| *name == &record[1]).expect("a run");
+        let run = names.iter().position(|name| *name == &record[1]).expect("a run");
         assert_eq!(all[id], runs[run][record[2].parse::<usize>().expect("an id")]);
     }
+    is_a_run_like_others(&folder, &merged);
 
-    // The folder is one that other commands read, check, repair and report on.
-    check(&out).code(0);
-    fs::remove_file(out.join("front.csv")).expect("a front");
-    check(&out).code(2);
-    kinefront().arg("check").arg(&out).arg("--repair").assert().code(0);
-    check(&out).code(0);
-    let again: serde_json::Value =
-        serde_json::from_slice(&fs::read(out.join("run.json")).expect("run.json")).expect("JSON");
-    assert_eq!(again["merged"], merged["merged"]);
-    kinefront()
-        .arg("report")
-        .arg(&out)
-        .arg("--out")
-        .arg(place("report"))
-        .args(["--sensitivity", "0", "--picture-width", "160"])
-        .assert()
-        .success();
-    assert!(place("report").join("index.html").exists());
-
-    // The order of the runs changes ids alone; a thinned one keeps the front.
-    merge(
-        &["run 3", "run 1", "run 2"],
-        &place("other order"),
-        &["--quiet", "--no-recording"],
-    )
-    .assert()
-    .success();
-    let sorted = |run: &Path| {
-        let mut lines = designs(run);
+    // The order of the runs changes ids alone.
+    let line = "merge 'run 3' 'run 1' 'run 2' --out other --quiet --no-recording";
+    folder.run(line).success();
+    let sorted = |run: &str| {
+        let mut lines = designs(&folder.join(run));
         lines.sort();
         lines
     };
-    assert_eq!(sorted(&out), sorted(&place("other order")));
-    merge(
-        &["run 1", "run 2", "run 3"],
-        &place("thin"),
-        &["--quiet", "--keep-every", "20"],
-    )
-    .assert()
-    .success();
-    let thin: serde_json::Value =
-        serde_json::from_slice(&fs::read(place("thin").join("run.json")).expect("run.json")).expect("JSON");
+    assert_eq!(sorted("merged"), sorted("other"));
+    // A thinned one keeps the front.
+    let line = "merge 'run 1' 'run 2' 'run 3' --out thin --quiet --keep-every 20";
+    folder.run(line).success();
+    let thin = read_report(&folder.join("thin"));
     assert!(thin["evaluations"].as_u64().expect("a number") < 300);
     // All designs of the front are kept, but not all of those from which optima are sought that the search has missed.
-    let hypervolume = |run: &serde_json::Value| run["verified_hypervolume_kg_m"].as_f64().expect("a number");
-    let lost = 1.0 - hypervolume(&thin) / hypervolume(&merged);
+    let lost = 1.0 - hypervolumes(&thin)[1] / verified;
     assert!(lost.abs() < 1e-3, "{lost}");
-    check(&place("thin")).code(0);
+    check(&folder.join("thin")).code(0);
+}
+
+/// Other commands read, check, repair and report on a merged folder.
+fn is_a_run_like_others(folder: &Folder, merged: &Value) {
+    let out = folder.join("merged");
+    check(&out).code(0);
+    fs::remove_file(out.join("front.csv")).expect("a front");
+    check(&out).code(2);
+    repair(&out).code(0);
+    check(&out).code(0);
+    assert_eq!(read_report(&out)["merged"], merged["merged"]);
+    let line = "report merged --out report --sensitivity 0 --picture-width 160";
+    folder.run(line).success();
+    assert!(folder.join("report/index.html").exists());
 }
 
 #[test]
 fn runs_that_cannot_be_joined_are_refused_with_the_difference() {
     let folder = folder();
-    let study = small_study(folder.path());
-    let place = |name: &str| folder.path().join(name);
-    optimize(&study, &place("a"), &["--evaluations", "60", "--no-recording"]);
-    optimize(&study, &place("longer"), &["--evaluations", "90", "--no-recording"]);
-    optimize(
-        &study,
-        &place("b"),
-        &["--evaluations", "60", "--seed", "9", "--no-recording"],
+    small_study(folder.path());
+    for (run, more) in [
+        ("a", "--evaluations 60"),
+        ("longer", "--evaluations 90"),
+        ("b", "--evaluations 60 --seed 9"),
+        ("other", "--evaluations 60 --architectures 3-RPR"),
+    ] {
+        let line = format!("optimize small.toml --out {run} {more} --no-recording --quiet");
+        folder.run(&line).success();
+    }
+    for (line, words) in [
+        ("a other --out x", "`architectures` differs"),
+        ("a longer --out x", "hold the same designs"),
+        ("a missing --out x", "missing"),
+        ("a b --out a", "already holds a run"),
+    ] {
+        folder.run(&format!("merge {line}")).code(2).stderr(says(words));
+    }
+    assert!(
+        !folder.join("x").exists(),
+        "nothing is left of a merge that was refused"
     );
-    optimize(
-        &study,
-        &place("other"),
-        &["--evaluations", "60", "--architectures", "3-RPR", "--no-recording"],
-    );
-    let refused = |runs: [&str; 2], out: &str, words: &str| {
-        let mut command = kinefront();
-        command.arg("merge").args(runs.map(place)).arg("--out").arg(place(out));
-        let told = command.assert().code(2);
-        let text = String::from_utf8_lossy(&told.get_output().stderr).replace("\n  │", "");
-        assert!(text.contains(words), "{text}");
-    };
-    refused(["a", "other"], "x", "`architectures` differs");
-    refused(["a", "longer"], "x", "hold the same designs");
-    refused(["a", "missing"], "x", "missing");
-    refused(["a", "b"], "a", "already holds a run");
-    assert!(!place("x").exists(), "nothing is left of a merge that was refused");
 
     // A merged folder can be neither continued nor extended.
-    kinefront()
-        .arg("merge")
-        .args(["a", "b"].map(place))
-        .arg("--out")
-        .arg(place("m"))
-        .arg("--quiet")
-        .assert()
-        .success();
-    let mut command = kinefront();
-    command
-        .args(["optimize", "--evaluations", "500", "--resume"])
-        .arg(place("m"));
-    let told = command.assert().code(2);
-    let text = String::from_utf8_lossy(&told.get_output().stderr).replace("\n  │", "");
-    assert!(text.contains("designs of several runs"), "{text}");
+    folder.run("merge a b --out m --quiet").success();
+    let told = folder.run("optimize --evaluations 500 --resume m").code(2);
+    told.stderr(says("designs of several runs"));
 }
 
 #[test]
@@ -211,7 +161,7 @@ fn octave_evaluates_designs() {
         "{text}{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let known = super::support::json(["evaluate", "--json", "--design", DESIGN]);
+    let known = json(&format!("evaluate --json --design '{DESIGN}'"));
     let mut lines = text.lines();
     let numbers: Vec<f64> = lines
         .next()
@@ -221,7 +171,7 @@ fn octave_evaluates_designs() {
         .collect();
     assert_eq!(
         numbers,
-        [&known["mass_kg"], &known["workspace_radius_m"]].map(|value| value.as_f64().expect("a number"))
+        ["mass_kg", "workspace_radius_m"].map(|key| number(&known[key]))
     );
     assert!(lines.next().is_some_and(|line| line.contains("4-PRR")), "{text}");
 }

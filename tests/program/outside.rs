@@ -2,29 +2,19 @@
 
 use std::path::Path;
 
-use super::support::{python, script};
+use super::support::{list, number, python, script_json};
 
 #[test]
 fn pymoo_finds_a_front_through_the_stream() {
     if let Some(python) = python(&["pymoo", "numpy"]) {
-        let printed = script(python, "pymoo_nsga2.py", &[Path::new(env!("CARGO_BIN_EXE_kinefront"))]);
-        let report: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
-        let front = report["front"].as_array().expect("a list");
-        assert!(front.len() >= 10, "{printed}");
-        let masses: Vec<f64> = front
-            .iter()
-            .map(|design| design[0].as_f64().expect("a number"))
-            .collect();
-        let radii: Vec<f64> = front
-            .iter()
-            .map(|design| design[1].as_f64().expect("a number"))
-            .collect();
+        let report = script_json(python, "pymoo_nsga2.py", &[Path::new(env!("CARGO_BIN_EXE_kinefront"))]);
+        let front = list(&report["front"]);
+        assert!(front.len() >= 10, "{report}");
+        let [masses, radii] =
+            [0, 1].map(|place: usize| -> Vec<f64> { front.iter().map(|design| number(&design[place])).collect() });
         assert!(masses.is_sorted() && radii.is_sorted() && radii[0] > 0.0);
         // The final front is better than the initial sample.
-        let volume = |key: &str| report[key].as_f64().expect("a number");
-        assert!(
-            volume("last_hypervolume") > 1.2 * volume("first_hypervolume"),
-            "{printed}"
-        );
+        let (first, last) = (&report["first_hypervolume"], &report["last_hypervolume"]);
+        assert!(number(last) > 1.2 * number(first), "{report}");
     }
 }

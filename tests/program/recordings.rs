@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use predicates::str::contains;
-
-use super::support::{DESIGN, folder, kinefront, optimize, python, script, small_study};
+use super::support::{
+    DESIGN, folder, number, optimize, python, read_rows, says, script, script_json, small_run, value,
+};
 
 /// Checks that the recording of a run folder passes `rerun rrd verify` and contains the rows of the tables.
 pub fn agrees_with_its_tables(run: &Path) {
@@ -23,10 +23,7 @@ pub fn are_alike(run: &Path, other: &Path) {
 
 #[test]
 fn a_recording_holds_what_the_tables_hold() {
-    let folder = folder();
-    let out = folder.path().join("run");
-    optimize(&small_study(folder.path()), &out, &[]);
-    agrees_with_its_tables(&out);
+    agrees_with_its_tables(&small_run());
 }
 
 /// The plot of a recording shows what the study seeks.
@@ -40,20 +37,18 @@ fn recordings_follow_the_question_of_the_study() {
             "objectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]\n",
         ),
     ] {
-        let study = small_study(folder.path());
-        let mut text = std::fs::read_to_string(&study).expect("a study");
-        text.insert_str(0, "workspace.region = { kind = \"disc\", radius_m = 0.5 }\n");
-        text.insert_str(0, question);
-        std::fs::write(&study, text).expect("a study");
-        let run = folder.path().join(name);
-        optimize(&study, &run, &["--evaluations", "240"]);
+        let region = "workspace.region = { kind = \"disc\", radius_m = 0.5 }\n";
+        let text = question.to_owned() + region + &kinefront_testkit::small_study(240);
+        let study = folder.write("small.toml", text);
+        let run = folder.join(name);
+        optimize(&study, &run, &[]);
         agrees_with_its_tables(&run);
     }
 }
 
 fn check_design(path: &Path) -> Option<serde_json::Value> {
     let python = python(&["rerun", "pyarrow", "numpy"])?;
-    Some(serde_json::from_str(&script(python, "check_design.py", &[path])).expect("JSON"))
+    Some(script_json(python, "check_design.py", &[path]))
 }
 
 #[test]
@@ -66,13 +61,9 @@ fn a_design_is_recorded_with_its_overlays_and_its_tour() {
         ("3-RRR R=3.3658 r=0.2537 Lb=1.9157 rj=0.0787 rp=0.0891", 6),
     ];
     for (index, (design, bars)) in designs.into_iter().enumerate() {
-        let path = folder.path().join(format!("{index}.rrd"));
-        kinefront()
-            .args(["show", "--design", design, "--record"])
-            .arg(&path)
-            .assert()
-            .success();
-        if let Some(found) = check_design(&path) {
+        let line = format!("show --design '{design}' --record {index}.rrd");
+        folder.run(&line).success();
+        if let Some(found) = check_design(&folder.join(format!("{index}.rrd"))) {
             assert_eq!(found["poses"], 235);
             assert_eq!(found["leg_bars"], bars);
             assert_eq!(
@@ -95,53 +86,34 @@ fn a_design_is_recorded_with_its_overlays_and_its_tour() {
 #[test]
 fn a_design_of_a_front_is_shown_by_its_id() {
     let folder = folder();
-    let out = folder.path().join("run");
-    optimize(&small_study(folder.path()), &out, &[]);
-    let table = out.join("front.csv");
-    let mut reader = csv::Reader::from_path(&table).expect("a table");
-    let row = reader.records().last().expect("a row").expect("a row");
-    let path = folder.path().join("one.rrd");
-    let show = |id: &str, path: &Path| {
-        let mut command = kinefront();
-        command
-            .arg("show")
-            .arg(format!("{}#{id}", table.display()))
-            .arg("--record")
-            .arg(path);
-        command.assert()
-    };
-    show(&row[0], &path).success();
-    if let Some(found) = check_design(&path) {
+    let table = small_run().join("front.csv");
+    let rows = read_rows(&table);
+    let row = rows.last().expect("a row");
+    let show = |id: &str, name: &str| folder.run(&format!("show '{}#{id}' --record {name}", table.display()));
+    show(&row["id"], "one.rrd").success();
+    if let Some(found) = check_design(&folder.join("one.rrd")) {
         let card = found["card"].as_str().expect("a card");
-        let radius: f64 = row[10].parse().expect("a number");
+        let radius = value(row, "workspace_radius_m");
         assert!(card.contains(&format!("R_w = {radius:.4} m")), "{card}");
     }
     // No file is overwritten, and an id that does not exist is reported with ids that do.
-    show(&row[0], &path).code(2).stderr(contains("already exists"));
-    show("999999", &folder.path().join("two.rrd"))
-        .code(2)
-        .stderr(contains("has no design #999999"));
-    assert!(!folder.path().join("two.rrd").exists());
+    let told = show(&row["id"], "one.rrd").code(2);
+    told.stderr(says("already exists"));
+    let told = show("999999", "two.rrd").code(2);
+    told.stderr(says("has no design #999999"));
+    assert!(!folder.join("two.rrd").exists());
 }
 
 #[test]
 fn an_infeasible_design_can_be_looked_at() {
     let folder = folder();
-    let path = folder.path().join("one.rrd");
     let design = "3-PRR R=3.3778 r=1.6043 Lb=1.6523 rj=0.094 rp=0.0329";
-    kinefront()
-        .args(["show", "--design", design, "--field", "k_z", "--record"])
-        .arg(&path)
-        .assert()
-        .success();
-    assert!(path.metadata().expect("the file").len() > 10_000);
-    let wrong = folder.path().join("two.rrd");
-    kinefront()
-        .args(["show", "--design", design, "--field", "heat", "--record"])
-        .arg(&wrong)
-        .assert()
-        .code(2)
-        .stderr(contains("worst_margin"));
+    let show = |more: &str| folder.run(&format!("show --design '{design}' {more}"));
+    show("--field k_z --record one.rrd").success();
+    let size = folder.join("one.rrd").metadata().expect("the file").len();
+    assert!(size > 10_000, "{size} bytes");
+    let told = show("--field heat --record two.rrd").code(2);
+    told.stderr(says("worst_margin"));
 }
 
 /// The recording of a design of a study with a motion has its curves and poses over the time of the cycle, as the table of the motion
@@ -149,26 +121,22 @@ fn an_infeasible_design_can_be_looked_at() {
 #[test]
 fn a_recording_of_a_design_has_the_motion_of_the_study() {
     let folder = folder();
-    let study = folder.path().join("study.toml");
     let text = "[task]\nshape = \"waypoints\"\nwaypoints = [[-0.3, 0, 35], [0.3, 0.1, 45]]\ncycle_time_s = 2.5\ndwell_s = 0.25\n[payload]\nmass_kg = 3\n";
-    std::fs::write(&study, text).expect("a study");
-    let recording = folder.path().join("design.rrd");
+    folder.write("study.toml", text);
     let of = |command: &str| {
-        let mut command_line = kinefront();
-        command_line.args([command, "--design", DESIGN, "--study"]).arg(&study);
-        command_line
+        folder
+            .run(&format!("{command} --design '{DESIGN}' --study study.toml"))
+            .success()
     };
-    of("show").arg("--record").arg(&recording).assert().success();
-    let told = of("task").args(["--csv", "--grid", "fine"]).assert().success();
-    let table = folder.path().join("motion.csv");
-    std::fs::write(&table, &told.get_output().stdout).expect("a table");
+    of("show --record design.rrd");
+    let told = of("task --csv --grid fine");
+    let table = folder.write("motion.csv", &told.get_output().stdout);
     let Some(python) = python(&["rerun", "pyarrow", "numpy"]) else {
         return;
     };
-    let found: serde_json::Value =
-        serde_json::from_str(&script(python, "check_motion.py", &[&recording, &table])).expect("JSON");
+    let found = script_json(python, "check_motion.py", &[&folder.join("design.rrd"), &table]);
     assert_eq!(found["rows"], 402);
     assert!(found["poses"].as_u64().expect("a count") > 100, "{found}");
-    assert!(found["off"].as_f64().expect("a number") < 1e-6, "{found}");
+    assert!(number(&found["off"]) < 1e-6, "{found}");
     assert_eq!(found["has_path"], true);
 }

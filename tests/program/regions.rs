@@ -1,15 +1,12 @@
 //! Runs for prescribed regions: every design that is reported is proved, and no random pose of its region misses a limit.
 
-use std::fs;
-
-use kinefront_model::evaluation::PoseScalar;
-use kinefront_study::RunFolder;
+use kinefront_model::evaluation::{Model, PoseScalar};
+use kinefront_study::{RunFolder, TableRow};
 use kinefront_testkit::poses_of_region;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
-use serde_json::Value;
 
-use super::support::{check, folder, front, json, kinefront, optimize, question, repetitions};
+use super::support::{check, folder, front, list, number, optimize, parsed, question, repetitions, says};
 
 /// Studies of builders, each with the least number of designs that its front has.
 const STUDIES: [(&str, &str, usize); 3] = [
@@ -61,11 +58,9 @@ radius_m = 0.5
 #[test]
 fn reported_designs_hold_their_region() {
     let folder = folder();
-    let poses = repetitions(2000, 200_000);
     for (name, text, least) in STUDIES {
-        let study = folder.path().join(format!("{name}.toml"));
-        fs::write(&study, text).expect("a study");
-        let out = folder.path().join(name);
+        let study = folder.write(&format!("{name}.toml"), text);
+        let out = folder.join(name);
         optimize(
             &study,
             &out,
@@ -74,57 +69,50 @@ fn reported_designs_hold_their_region() {
         let run = RunFolder::open(&out).expect("a run");
         let report = run.report().expect("a report");
         let proofs = report.proofs.as_ref().expect("proofs");
-        let front = run.front().expect("a table").expect("a front").rows;
-        assert!(
-            front.len() >= least && front.len() <= 12,
-            "{name}: {} designs",
-            front.len()
-        );
-        assert_eq!((proofs.proved, proofs.open), (front.len(), 0), "{name}: {proofs}");
+        let front = front(&out);
+        let count = front.len();
+        assert!((least..=12).contains(&count), "{name}: {count} designs");
+        assert_eq!((proofs.proved, proofs.open), (count, 0), "{name}: {proofs}");
         let model = run.study().model().expect("a model");
         for entry in &front {
-            let certified = entry.certified.expect("a certificate");
-            assert!(certified.is_proved && certified.is_of_region && certified.upper.is_none());
-            let phi_deg = entry.row.phi.expect("a home");
-            for pose in poses_of_region(&model.settings().workspace, phi_deg, poses, 17 + entry.id as u64) {
-                assert!(
-                    model.pose(&entry.row.design, &pose).is_ok(),
-                    "{name} #{} at {pose:?}",
-                    entry.id
-                );
-                for (scalar, _) in model.settings().thresholds.iter() {
-                    let margin = model.margin_at(&entry.row.design, &pose, scalar);
-                    let is_kept = margin >= -1e-9 || scalar == PoseScalar::Determinant;
-                    assert!(is_kept, "{name} #{}: {scalar:?} {margin} at {pose:?}", entry.id);
-                }
-            }
+            misses_no_limit(&model, entry, name);
         }
         check(&out).success();
         // The command proves the same, and refutes a region that is larger.
-        let certify = |study: &std::path::Path| {
-            kinefront()
-                .args([
-                    "certify",
-                    "--json",
-                    "--design",
-                    &front[0].row.design.to_string(),
-                    "--study",
-                ])
-                .arg(study)
-                .assert()
-                .success()
+        let certify = |study: &str| {
+            let design = &front[0].row.design;
+            let told = folder.run(&format!("certify --json --design '{design}' --study {study}"));
+            parsed(&told.success())
         };
-        certify(&study)
-            .stdout(contains(r#""verdict":"proved""#))
-            .stdout(contains(r#""claim":"region""#));
-        let larger = folder.path().join(format!("{name}-larger.toml"));
+        let proof = certify(&format!("{name}.toml"));
+        assert_eq!(
+            (&proof["verdict"], &proof["claim"]),
+            (&"proved".into(), &"region".into())
+        );
         let grown = text
             .replace("width_m = 0.6", "width_m = 1.9")
             .replace("[0.3, -0.2]", "[1.9, -0.2]")
             .replace("radius_m = 0.5", "radius_m = 1.5");
         assert_ne!(grown, text);
-        fs::write(&larger, grown).expect("a study");
-        certify(&larger).stdout(contains(r#""verdict":"refuted""#));
+        folder.write("larger.toml", grown);
+        assert_eq!(certify("larger.toml")["verdict"], "refuted", "{name}");
+    }
+}
+
+/// Checks that a reported design is proved and keeps every limit at random poses of its region.
+fn misses_no_limit(model: &Model, entry: &TableRow, study: &str) {
+    let certified = entry.certified.expect("a certificate");
+    assert!(certified.is_proved && certified.is_of_region && certified.upper.is_none());
+    let (design, phi_deg) = (&entry.row.design, entry.row.phi.expect("a home"));
+    let (settings, count) = (model.settings(), repetitions(2000, 200_000));
+    for pose in poses_of_region(&settings.workspace, phi_deg, count, 17 + entry.id as u64) {
+        let place = format!("{study} #{} at {pose:?}", entry.id);
+        assert!(model.pose(design, &pose).is_ok(), "{place}");
+        for (scalar, _) in settings.thresholds.iter() {
+            let margin = model.margin_at(design, &pose, scalar);
+            let is_kept = margin >= -1e-9 || scalar == PoseScalar::Determinant;
+            assert!(is_kept, "{scalar:?} {margin}: {place}");
+        }
     }
 }
 
@@ -132,7 +120,7 @@ fn reported_designs_hold_their_region() {
 #[test]
 fn no_design_of_a_front_repeats_another_one() {
     let folder = folder();
-    let out = folder.path().join("run");
+    let out = folder.join("run");
     optimize(
         &question("disc-footprint"),
         &out,
@@ -154,7 +142,7 @@ fn no_design_of_a_front_repeats_another_one() {
 #[test]
 fn the_lightest_of_all_architectures_is_not_that_of_the_search() {
     let folder = folder();
-    let out = folder.path().join("run");
+    let out = folder.join("run");
     optimize(
         &question("polygon-all"),
         &out,
@@ -180,105 +168,74 @@ fn the_lightest_of_all_architectures_is_not_that_of_the_search() {
 #[test]
 fn legs_in_layers_of_their_own_are_told() {
     let folder = folder();
-    let study = folder.path().join("study.toml");
     let write = |stacking: &str| {
         let text = format!(
             "architectures = [\"3-RPR\"]\nrequirements.clearance_min_m = 0.004\nbodies.stacking = \"{stacking}\"\n"
         );
-        fs::write(&study, text).expect("a study");
+        folder.write("study.toml", text);
     };
-    let design = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018";
-    let path = study.to_str().expect("a path");
-    let evaluate = ["evaluate", "--design", design, "--study", path];
+    let ask = |command: &str| {
+        let design = "3-RPR R=0.99 r=0.67 Lb=2.21 rj=0.019 rp=0.018";
+        folder.run(&format!("{command} --design '{design}' --study study.toml"))
+    };
     write("common");
-    let common = json(evaluate.iter().chain(&["--json"]));
+    let common = parsed(&ask("evaluate --json").success());
     assert_eq!((&common["feasible"], common.get("layers")), (&false.into(), None));
     write("chosen");
-    let chosen = json(evaluate.iter().chain(&["--json"]));
-    assert_eq!(
-        (&chosen["feasible"], &chosen["layers"]["stack"]),
-        (&true.into(), &"legs".into())
-    );
-    let mut order: Vec<u64> = chosen["layers"]["order"]
-        .as_array()
-        .expect("an order")
-        .iter()
-        .filter_map(serde_json::Value::as_u64)
-        .collect();
+    let chosen = parsed(&ask("evaluate --json").success());
+    assert_eq!(chosen["feasible"], true);
+    assert_eq!(chosen["layers"]["stack"], "legs");
+    let order = list(&chosen["layers"]["order"]).iter();
+    let mut order: Vec<u64> = order.filter_map(serde_json::Value::as_u64).collect();
     order.sort_unstable();
     assert_eq!(order, [1, 2, 3]);
-    kinefront()
-        .args(evaluate)
-        .assert()
-        .success()
-        .stdout(contains(", stacked"));
+    ask("evaluate").success().stdout(contains(", stacked"));
     // Its workspace is proved with the pins of the joints between the layers.
-    let certify = ["certify", "--design", design, "--study", path, "--json"];
-    let proof = json(certify);
-    let (lower, radius) = (&proof["lower_m"], &chosen["workspace_radius_m"]);
-    assert!(lower.as_f64() > radius.as_f64().map(|radius| 0.99 * radius), "{proof}");
+    let proof = parsed(&ask("certify --json").success());
+    let radius = number(&chosen["workspace_radius_m"]);
+    assert!(number(&proof["lower_m"]) > 0.99 * radius, "{proof}");
     write("free");
-    kinefront()
-        .args(evaluate)
-        .assert()
-        .code(2)
-        .stderr(contains("bodies.stacking").and(contains("chosen")));
+    let told = ask("evaluate").code(2);
+    told.stderr(says("bodies.stacking").and(says("chosen")));
 }
 
 /// A limit that a design misses is told with its value, and a refutation names what is missed and where.
 #[test]
 fn what_an_infeasible_design_misses_is_told() {
     let folder = folder();
-    let study = folder.path().join("stiff.toml");
     let text = "architectures = [\"3-PRR\"]\nobjectives = [{ minimize = \"mass_kg\" }]\n[constraints]\nnatural_frequency_hz = { at_least = 500 }\n\
                 [workspace.region]\nkind = \"rectangle\"\nwidth_m = 0.4\nheight_m = 0.3\n";
-    fs::write(&study, text).expect("a study");
-    let design = ["--design", "3-PRR R=1 r=0.2 Lb=0.7 rj=0.02 rp=0.03", "--study"];
-    let asked = |command: &str, more: &[&str]| {
-        let mut asked = kinefront();
-        asked
-            .arg(command)
-            .args(design)
-            .arg(&study)
-            .args(more)
-            .assert()
+    folder.write("stiff.toml", text);
+    let ask = |command: &str| {
+        let design = "3-PRR R=1 r=0.2 Lb=0.7 rj=0.02 rp=0.03";
+        folder
+            .run(&format!("{command} --design '{design}' --study stiff.toml"))
             .success()
     };
-    let told = asked("evaluate", &["--json"]);
-    let told: Value = serde_json::from_slice(&told.get_output().stdout).expect("JSON");
+    let told = parsed(&ask("evaluate --json"));
     assert_eq!(told["feasible"], false);
-    let [limit] = told["limits"].as_array().expect("limits").as_slice() else {
+    let [limit] = list(&told["limits"]) else {
         panic!("{told}");
     };
-    let (value, margin) = (&limit["value"], &limit["margin"]);
-    let (value, margin) = (value.as_f64().expect("a value"), margin.as_f64().expect("a margin"));
+    let (value, margin) = (number(&limit["value"]), number(&limit["margin"]));
     assert!(value > 1.0 && (margin - (value / 500.0 - 1.0)).abs() < 1e-9, "{limit}");
-    asked("evaluate", &[]).stdout(contains("Hz: missed"));
-    asked("certify", &[]).stdout(contains("it misses natural_frequency_hz").and(contains("home orientation")));
-    let certified = asked("certify", &["--json"]);
-    let certified: Value = serde_json::from_slice(&certified.get_output().stdout).expect("JSON");
-    assert_eq!(certified["verdict"], "refuted");
+    ask("evaluate").stdout(contains("Hz: missed"));
+    ask("certify").stdout(contains("it misses natural_frequency_hz").and(contains("home orientation")));
+    assert_eq!(parsed(&ask("certify --json"))["verdict"], "refuted");
 }
 
 /// A study may leave no dimension free: each is a list.
 #[test]
 fn a_study_whose_dimensions_are_all_listed_is_searched() {
     let folder = folder();
-    let study = folder.path().join("listed.toml");
     let text = "architectures = [\"3-PRR\"]\nobjectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]\n\
                 [variables]\nR_m = [0.8, 1.0]\nr_m = [0.15, 0.2, 0.25]\nLb_m = [0.6, 0.7]\nrj_m = [0.015, 0.02, 0.025]\nrp_m = [0.02, 0.03]\n\
                 [workspace.region]\nkind = \"disc\"\nradius_m = 0.2\n[optimizer]\nevaluations = 60\n";
-    fs::write(&study, text).expect("a study");
-    let run = folder.path().join("run");
-    kinefront()
-        .args(["optimize", "--no-recording", "--quiet", "--out"])
-        .arg(&run)
-        .arg(&study)
-        .assert()
-        .success();
-    let front = fs::read_to_string(run.join("front.csv")).expect("a front");
+    folder.write("listed.toml", text);
+    let search = "optimize listed.toml --no-recording --quiet --out run";
+    folder.run(search).success();
+    let front = folder.read("run/front.csv");
     assert!(front.lines().count() > 2, "{front}");
     // A run folder stands for its front.
-    let best = format!("{}#best", run.display());
-    kinefront().args(["evaluate", &best]).assert().success();
+    folder.run("evaluate run#best").success();
 }

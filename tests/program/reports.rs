@@ -1,11 +1,14 @@
 //! Reports: self-contained pages that load nothing and show the numbers of the run.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 
-use super::support::{folder, kinefront, optimize, small_study};
+use super::support::{
+    Folder, copy, folder, kinefront, optimize, read_rows, says, short_run, small_run, small_study, value,
+};
 
 /// Returns the values of all attributes `name="…"` of a page.
 fn attributes<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
@@ -19,57 +22,31 @@ fn attributes<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
 }
 
 fn report(runs: &[&Path], out: &Path, more: &[&str]) -> assert_cmd::assert::Assert {
-    kinefront()
-        .arg("report")
-        .args(runs)
-        .arg("--out")
-        .arg(out)
-        .args(["--quiet", "--picture-width", "200", "--scale", "0.5"])
-        .args(more)
-        .assert()
+    let mut command = kinefront();
+    command.arg("report").args(runs).arg("--out").arg(out);
+    command.args(["--quiet", "--picture-width", "200", "--scale", "0.5"]);
+    command.args(more).assert()
+}
+
+/// Returns the page of a report, or another of its texts.
+fn read(report: &Path, name: &str) -> String {
+    fs::read_to_string(report.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 #[test]
 fn a_page_holds_everything_and_loads_nothing() {
     let folder = folder();
-    let (run, out) = (folder.path().join("run"), folder.path().join("page"));
-    optimize(&small_study(folder.path()), &run, &[]);
+    let (run, out) = (small_run(), folder.join("page"));
     report(&[&run], &out, &["--sensitivity", "60"]).success().stdout("");
-    let again = folder.path().join("again");
-    kinefront()
-        .arg("report")
-        .arg(&run)
-        .arg("--out")
-        .arg(&again)
-        .args(["--picture-width", "160", "--scale", "0.5", "--sensitivity", "0"])
-        .assert()
-        .success()
-        .stdout(contains(again.join("index.html").display().to_string()));
-    let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
-
-    // Nothing is fetched: pictures are embedded, links stay within the page, and there is no script.
-    for source in attributes(&page, "src") {
-        assert!(
-            source.starts_with("data:image/png;base64,iVBOR"),
-            "{}",
-            &source[..40.min(source.len())]
-        );
-    }
-    let anchors = attributes(&page, "id");
-    for link in attributes(&page, "href") {
-        let target = link.strip_prefix('#').unwrap_or_else(|| panic!("{link} leads outside"));
-        assert!(anchors.contains(&target), "{link} leads nowhere");
-    }
-    for word in ["<script", "<link", "<iframe", "@import", "url(", "<base"] {
-        assert!(!page.contains(word), "{word}");
-    }
+    let page = read(&out, "index.html");
+    loads_nothing(&page);
 
     // Three charts of all architectures; for each of the three architectures a front, two charts of variables, and
     // charts of active constraints, clearance and sensitivity, and two of prices.
     let names = |name: &str, extension: &str| -> Vec<String> {
-        let mut found: Vec<String> = std::fs::read_dir(out.join(name))
-            .expect("a folder")
-            .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        let entries = fs::read_dir(out.join(name)).expect("a folder");
+        let files = entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned());
+        let mut found: Vec<String> = files
             .filter_map(|file| file.strip_suffix(extension).map(str::to_owned))
             .collect();
         found.sort();
@@ -79,100 +56,120 @@ fn a_page_holds_everything_and_loads_nothing() {
     assert_eq!(figures, names("figures", ".png"));
     assert_eq!(figures.len(), 3 + 3 + 3 * 2 + 3 + 3 + 3 + 3 * 2);
     for figure in &figures {
-        assert!(
-            page.contains(&format!("id=\"figure-{figure}\"")),
-            "{figure} is not in the page"
-        );
+        let is_shown = page.contains(&format!("id=\"figure-{figure}\""));
+        assert!(is_shown, "{figure} is not in the page");
     }
     let pictures = names("pictures", ".png");
     assert_eq!(attributes(&page, "src").len(), pictures.len());
     assert!(pictures.contains(&"3-prr-knee".to_owned()), "{pictures:?}");
-
-    // The numbers are those of the run: every design of `fronts.csv` was evaluated by the run, or reported by it, or is one
-    // with thicker bars.
-    let rows = |path: &Path| -> Vec<csv::StringRecord> {
-        let mut reader = csv::Reader::from_path(path).expect("a table");
-        reader.records().map(|record| record.expect("a row")).collect()
-    };
-    let shown = rows(&out.join("fronts.csv"));
-    let designs = [rows(&run.join("designs.csv")), rows(&run.join("front.csv"))].concat();
-    assert!(shown.len() > 20);
-    for row in &shown {
-        // Architecture, mode and lengths; the bars may be thicker by the same small factor.
-        let bar = |row: &csv::StringRecord, column: usize| row[column].parse::<f64>().expect("a radius");
-        let same = |other: &&csv::StringRecord| {
-            let growth = [7, 8].map(|column| bar(row, column) / bar(other, column) - 1.0);
-            (2..7).all(|column| row[column] == other[column])
-                && (0.0..1.001e-3).contains(&growth[0])
-                && (growth[0] - growth[1]).abs() < 1e-12
-        };
-        assert!(designs.iter().any(|other| same(&other)), "{row:?}");
-    }
-    // The page shows the masses of the lightest and the heaviest design of each architecture.
-    for architecture in ["3-PRR", "3-RPR", "3-RRR"] {
-        let masses: Vec<f64> = shown
-            .iter()
-            .filter(|row| &row[2] == architecture)
-            .map(|row| row[9].parse().expect("a mass"))
-            .collect();
-        let ends = [f64::min as fn(f64, f64) -> f64, f64::max].map(|pick| masses.iter().copied().reduce(pick));
-        for mass in ends.into_iter().flatten() {
-            let text = kinefront_scene::text::number(mass);
-            assert!(
-                page.contains(&format!("mass <b>{text}</b> kg")),
-                "{architecture}: no {text} kg"
-            );
-        }
-    }
+    has_the_numbers_of_the_run(&run, &out, &page);
     assert!(page.contains("kinefront report run --sensitivity 60"));
     assert!(page.contains("3 other random seeds") && page.contains("K_act × 10"));
     // The page does not reveal the path of the folder.
-    assert!(!page.contains(&folder.path().display().to_string()));
+    let paths: [&Path; 2] = [folder.path(), &run];
+    for path in paths {
+        assert!(!page.contains(&path.display().to_string()));
+    }
 }
 
-/// Runs whose studies state the same problem make one report; other runs are rejected.
+/// Checks that nothing is fetched: pictures are embedded, links stay within the page, and there is no script.
+fn loads_nothing(page: &str) {
+    for source in attributes(page, "src") {
+        let begin = &source[..40.min(source.len())];
+        assert!(source.starts_with("data:image/png;base64,iVBOR"), "{begin}");
+    }
+    let anchors = attributes(page, "id");
+    for link in attributes(page, "href") {
+        let target = link.strip_prefix('#').unwrap_or_else(|| panic!("{link} leads outside"));
+        assert!(anchors.contains(&target), "{link} leads nowhere");
+    }
+    for word in ["<script", "<link", "<iframe", "@import", "url(", "<base"] {
+        assert!(!page.contains(word), "{word}");
+    }
+}
+
+/// Checks that every design of `fronts.csv` was evaluated by the run, or reported by it, or is one with thicker bars; and that the page
+/// shows the masses of the lightest and the heaviest design of each architecture.
+fn has_the_numbers_of_the_run(run: &Path, out: &Path, page: &str) {
+    let shown = read_rows(&out.join("fronts.csv"));
+    let designs = [read_rows(&run.join("designs.csv")), read_rows(&run.join("front.csv"))].concat();
+    assert!(shown.len() > 20);
+    for row in &shown {
+        let is_same = designs.iter().any(|other| {
+            let growth = ["rj", "rp"].map(|bar| value(row, bar) / value(other, bar) - 1.0);
+            let others = ["architecture", "working_mode", "R", "r", "Lb"];
+            others.into_iter().all(|column| row[column] == other[column])
+                && (0.0..1.001e-3).contains(&growth[0])
+                && (growth[0] - growth[1]).abs() < 1e-12
+        });
+        assert!(is_same, "{row:?}");
+    }
+    for architecture in ["3-PRR", "3-RPR", "3-RRR"] {
+        let of_architecture = shown.iter().filter(|row| row["architecture"] == architecture);
+        let masses: Vec<f64> = of_architecture.map(|row| value(row, "mass_kg")).collect();
+        let ends = [f64::min as fn(f64, f64) -> f64, f64::max].map(|pick| masses.iter().copied().reduce(pick));
+        for mass in ends.into_iter().flatten() {
+            let text = kinefront_scene::text::number(mass);
+            let is_shown = page.contains(&format!("mass <b>{text}</b> kg"));
+            assert!(is_shown, "{architecture}: no {text} kg");
+        }
+    }
+}
+
+/// The command says where the page is, unless it is told to be quiet.
+#[test]
+fn the_place_of_a_page_is_told() {
+    let folder = folder();
+    copy(&short_run(&["--evaluations", "60"]), &folder.join("run"));
+    let line = "report run --out page --picture-width 160 --scale 0.5 --sensitivity 0";
+    let told = folder.run(line).success();
+    told.stdout(contains(Path::new("page").join("index.html").display().to_string()));
+}
+
+/// Searches a study in a folder and returns the run.
+fn search(folder: &Folder, study: &str, name: &str, more: &str) -> PathBuf {
+    let line = format!("optimize {study} --out {name} {more} --no-recording --quiet");
+    folder.run(&line).success();
+    folder.join(name)
+}
+
+/// Runs whose studies state the same problem make one report.
 #[test]
 fn runs_are_put_together_where_they_ask_for_the_same() {
     let folder = folder();
-    let study = small_study(folder.path());
-    let run = |name: &str, more: &[&str]| {
-        let path = folder.path().join(name);
-        optimize(&study, &path, more);
-        path
-    };
+    small_study(folder.path());
     // Fronts of few designs have none near most radii.
-    let first = run("first", &["--architectures", "3-PRR", "--front", "40"]);
-    let second = run(
-        "second",
-        &[
-            "--architectures",
-            "3-RPR",
-            "--algorithm",
-            "nsga2",
-            "--seed",
-            "9",
-            "--front",
-            "40",
-        ],
-    );
-    let out = folder.path().join("both");
+    let first = search(&folder, "small.toml", "first", "--architectures 3-PRR --front 40");
+    let other = "--architectures 3-RPR --algorithm nsga2 --seed 9 --front 40";
+    let second = search(&folder, "small.toml", "second", other);
+    let out = folder.join("both");
     report(&[&first, &second], &out, &["--sensitivity", "0"]).success();
-    let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
+    let page = read(&out, "index.html");
     assert!(page.contains("Pareto front of the 3-PRR.") && page.contains("Pareto front of the 3-RPR."));
     assert!(!page.contains("Pareto front of the 3-RRR.") && !page.contains("Repeated searches"));
 
-    let text = std::fs::read_to_string(&study).expect("a study");
-    let softer = folder.path().join("softer.toml");
-    std::fs::write(&softer, format!("{text}[material]\nyoungs_modulus_pa = 70e9\n")).expect("a study");
-    let third = folder.path().join("third");
-    optimize(
-        &softer,
-        &third,
-        &["--evaluations", "60", "--architectures", "3-PRR", "--front", "40"],
-    );
-    let beside = folder.path().join("beside");
-    report(&[&first, &third], &beside, &["--sensitivity", "0"]).success();
-    let page = std::fs::read_to_string(beside.join("index.html")).expect("a page");
+    let text = folder.read("small.toml");
+    folder.write("softer.toml", format!("{text}[material]\nyoungs_modulus_pa = 70e9\n"));
+    let more = "--evaluations 60 --architectures 3-PRR --front 40";
+    let third = search(&folder, "softer.toml", "third", more);
+    stand_side_by_side(&folder, [&first, &third]);
+
+    // Of other objectives there is nothing to compare.
+    let objectives = "objectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]";
+    let region = "[workspace.region]\nkind = \"disc\"\nradius_m = 0.3\n";
+    folder.write("other.toml", format!("{objectives}\n{text}{region}"));
+    let fourth = search(&folder, "other.toml", "fourth", "--evaluations 60");
+    let told = report(&[&first, &fourth], &folder.join("not"), &[]).code(2);
+    let combined = says("first and fourth cannot be combined in one report");
+    told.stderr(combined.and(says("objectives")));
+    assert!(!folder.join("not").exists());
+}
+
+/// Checks the page on two runs of which the second one has softer bars.
+fn stand_side_by_side(folder: &Folder, runs: [&Path; 2]) {
+    let beside = folder.join("beside");
+    report(&runs, &beside, &["--sensitivity", "0"]).success();
+    let page = read(&beside, "index.html");
     assert!(page.contains("Kinefront comparison: first, third"));
     assert!(page.contains("The mass in motion of third differs from that of first by "));
     assert!(page.contains("material.youngs_modulus_pa") && page.contains("70000000000"));
@@ -185,60 +182,42 @@ fn runs_are_put_together_where_they_ask_for_the_same() {
         "{levels}"
     );
     assert!(beside.join("figures/fronts.svg").exists() && beside.join("figures/fronts-log.png").exists());
+}
 
-    // Architectures of other variables: each run has the bounds of its own alone, and the page those of all.
-    let wide = folder.path().join("wide.toml");
+/// Architectures of other variables: each run has the bounds of its own alone, and the page those of all.
+#[test]
+fn runs_of_architectures_with_other_variables_are_put_together() {
+    let folder = folder();
     let bounds = "[bounds]\nLa_m = [0.5, 4.0]\nalpha_deg = [-30.0, 30.0]\n";
-    std::fs::write(&wide, format!("{text}{bounds}")).expect("a study");
-    let alone = ["3-PRR", "3-RRR", "3-RPR"].map(|architecture| {
-        let path = folder.path().join(architecture);
-        optimize(&wide, &path, &["--evaluations", "90", "--architectures", architecture]);
-        path
-    });
-    let written = std::fs::read_to_string(alone[1].join("study.toml")).expect("a study");
+    folder.write("wide.toml", kinefront_testkit::small_study(90) + bounds);
+    let architectures = ["3-PRR", "3-RRR", "3-RPR"];
+    let runs = architectures.map(|name| search(&folder, "wide.toml", name, &format!("--architectures {name}")));
+    let written = folder.read("3-RRR/study.toml");
     assert!(written.contains("La_m") && !written.contains("alpha_deg"), "{written}");
-    let all = folder.path().join("all");
-    report(&[&alone[0], &alone[1], &alone[2]], &all, &[]).success();
-    let page = std::fs::read_to_string(all.join("index.html")).expect("a page");
-    for architecture in ["3-PRR", "3-RPR", "3-RRR"] {
-        assert!(
-            page.contains(&format!("Pareto front of the {architecture}.")),
-            "{architecture}"
-        );
+    let all = folder.join("all");
+    report(&[&runs[0], &runs[1], &runs[2]], &all, &[]).success();
+    let page = read(&all, "index.html");
+    for architecture in architectures {
+        let is_shown = page.contains(&format!("Pareto front of the {architecture}."));
+        assert!(is_shown, "{architecture}");
     }
-
-    // Of other objectives there is nothing to compare.
-    let other = folder.path().join("other.toml");
-    let objectives = "objectives = [{ minimize = \"mass_kg\" }, { maximize = \"k_xy_n_per_m\" }]";
-    let region = "[workspace.region]\nkind = \"disc\"\nradius_m = 0.3\n";
-    std::fs::write(&other, format!("{objectives}\n{text}{region}")).expect("a study");
-    let fourth = folder.path().join("fourth");
-    optimize(&other, &fourth, &["--evaluations", "60"]);
-    report(&[&first, &fourth], &folder.path().join("not"), &[])
-        .code(2)
-        .stderr(contains("first and fourth cannot be combined in one report").and(contains("objectives")));
-    assert!(!folder.path().join("not").exists());
 }
 
 /// The paper's study on small grids: its claims are judged if they can be, and not if an architecture is missing.
 #[test]
 fn the_papers_study_is_compared_with_the_paper() {
     let folder = folder();
-    let study = small_study(folder.path());
     let paper = kinefront_study::BUILTIN[0].text;
     let references = &paper[paper.find("[[references]]").expect("references")..];
-    let text = std::fs::read_to_string(&study).expect("a study");
-    std::fs::write(&study, format!("{text}{references}")).expect("a study");
+    let text = kinefront_testkit::small_study(240) + references;
+    folder.write("small.toml", &text);
     let page = |name: &str, architectures: &str| {
-        let (run, out) = (folder.path().join(name), folder.path().join(format!("{name}-page")));
-        optimize(
-            &study,
-            &run,
-            &["--architectures", architectures, "--evaluations", "240"],
-        );
+        let more = format!("--architectures {architectures}");
+        let run = search(&folder, "small.toml", name, &more);
+        let out = folder.join(format!("{name}-page"));
         report(&[&run], &out, &["--sensitivity", "0"]).success();
         assert!(out.join("pictures/reference-1-id-i.png").exists());
-        std::fs::read_to_string(out.join("index.html")).expect("a page")
+        read(&out, "index.html")
     };
     let all = page("all", "3-PRR,3-RPR,3-RRR");
     for words in [
@@ -259,8 +238,7 @@ fn the_papers_study_is_compared_with_the_paper() {
     assert!(!one.contains("inf to"));
 
     // With another material the study is not the paper's, so the page does not compare with the paper.
-    let text = std::fs::read_to_string(&study).expect("a study");
-    std::fs::write(&study, format!("{text}[material]\nyoungs_modulus_pa = 70e9\n")).expect("a study");
+    folder.write("small.toml", text + "[material]\nyoungs_modulus_pa = 70e9\n");
     let other = page("other", "3-PRR");
     assert!(other.contains("Reference designs") && !other.contains("Differences from the paper"));
     assert!(!other.contains("mass range for the rounded bar radii"));
@@ -269,32 +247,27 @@ fn the_papers_study_is_compared_with_the_paper() {
 #[test]
 fn reports_say_what_is_wrong_and_replace_nothing_unasked() {
     let folder = folder();
-    let out = folder.path().join("page");
-    report(&[folder.path()], &out, &[])
-        .code(2)
-        .stderr(contains("holds no run"));
-    report(&[], &out, &[]).code(2).stderr(contains("<RUN>"));
+    let out = folder.join("page");
+    let told = report(&[folder.path()], &out, &[]).code(2);
+    told.stderr(says("holds no run"));
+    report(&[], &out, &[]).code(2).stderr(says("<RUN>"));
 
-    let run = folder.path().join("run");
-    optimize(&small_study(folder.path()), &run, &["--evaluations", "60"]);
-    std::fs::create_dir(&out).expect("a folder");
-    std::fs::write(out.join("index.html"), "mine").expect("a page");
-    report(&[&run], &out, &["--sensitivity", "0"])
-        .code(2)
-        .stderr(contains("already holds a report").and(contains("--replace")));
-    assert_eq!(std::fs::read_to_string(out.join("index.html")).expect("a page"), "mine");
+    let run = copy(&short_run(&["--evaluations", "60"]), &folder.join("run"));
+    fs::create_dir(&out).expect("a folder");
+    folder.write("page/index.html", "mine");
+    let told = report(&[&run], &out, &["--sensitivity", "0"]).code(2);
+    told.stderr(says("already holds a report").and(says("--replace")));
+    assert_eq!(folder.read("page/index.html"), "mine");
     report(&[&run], &out, &["--sensitivity", "0", "--replace"]).success();
-    assert!(std::fs::metadata(out.join("index.html")).expect("a page").len() > 10_000);
+    assert!(folder.read("page/index.html").len() > 10_000);
 
     // The message on an invalid table names the file and the line.
-    let designs = run.join("designs.csv");
-    let text = std::fs::read_to_string(&designs).expect("a table");
+    let text = folder.read("run/designs.csv");
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     lines[3] = lines[3].replacen("3-", "4-", 1);
-    std::fs::write(&designs, lines.join("\n")).expect("a table");
-    report(&[&run], &folder.path().join("other"), &[])
-        .code(2)
-        .stderr(contains("designs.csv").and(contains("line 4")));
+    folder.write("run/designs.csv", lines.join("\n"));
+    let told = report(&[&run], &folder.join("other"), &[]).code(2);
+    told.stderr(says("designs.csv").and(says("line 4")));
 }
 
 /// A report follows the question of the study: one objective for a rectangle, and two other objectives.
@@ -302,17 +275,14 @@ fn reports_say_what_is_wrong_and_replace_nothing_unasked() {
 fn a_report_answers_the_question_of_its_study() {
     let folder = folder();
     let of_question = |name: &str, question: &str| {
-        let study = small_study(folder.path());
-        let mut text = std::fs::read_to_string(&study).expect("a study");
-        text.insert_str(0, question);
-        std::fs::write(&study, text).expect("a study");
-        let run = folder.path().join(name);
-        let told = optimize(&study, &run, &["--evaluations", "300"]);
+        let text = question.to_owned() + &kinefront_testkit::small_study(300);
+        let study = folder.write("small.toml", text);
+        let run = folder.join(name);
+        let told = optimize(&study, &run, &["--no-recording"]);
         assert!(told["front_size"].as_u64() > Some(0), "{told}");
-        let out = folder.path().join(format!("{name}-page"));
+        let out = folder.join(format!("{name}-page"));
         report(&[&run], &out, &[]).success();
-        let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
-        let table = std::fs::read_to_string(out.join("fronts.csv")).expect("a table");
+        let (page, table) = (read(&out, "index.html"), read(&out, "fronts.csv"));
         (run, out, page, table)
     };
     let (run, out, page, table) = of_question(
@@ -333,11 +303,11 @@ fn a_report_answers_the_question_of_its_study() {
     // One design of each architecture that has a feasible one, each with its picture.
     let designs = table.lines().count() - 1;
     assert!((1..=3).contains(&designs), "{table}");
-    let pictures = std::fs::read_dir(out.join("pictures")).expect("a folder").count();
+    let pictures = fs::read_dir(out.join("pictures")).expect("a folder").count();
     assert_eq!(pictures, designs);
-    report(&[&run], &folder.path().join("refused"), &["--sensitivity", "100"])
+    report(&[&run], &folder.join("refused"), &["--sensitivity", "100"])
         .code(2)
-        .stderr(contains("Leave out --sensitivity"));
+        .stderr(says("Leave out --sensitivity"));
 
     let (_, out, page, _) = of_question(
         "stiff",

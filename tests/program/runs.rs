@@ -1,25 +1,27 @@
 //! Tests of complete runs: files, determinism, interruption.
 
+use std::f64::consts::TAU;
 use std::fs;
-use std::io::{BufRead, BufReader, Read};
+use std::io::Read;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use kinefront_model::evaluation::PoseScalar;
 use kinefront_testkit::numbers;
+use serde_json::Value;
 
-use super::support::{check, folder, kinefront, optimize, program, small_study};
-
-fn rows(path: &Path) -> Vec<csv::StringRecord> {
-    let mut reader = csv::Reader::from_path(path).expect("a table");
-    reader.records().map(|record| record.expect("a row")).collect()
-}
+#[cfg(unix)]
+use super::support::signal;
+use super::support::{
+    check, design_of, folder, json, list, number, optimize, program, read_rows, said, small_run, small_study, value,
+    wait_for,
+};
 
 #[test]
 fn a_run_leaves_its_files() {
-    let folder = folder();
-    let out = folder.path().join("run");
-    let report = optimize(&small_study(folder.path()), &out, &[]);
+    let out = small_run();
+    let printed = fs::read(out.with_file_name("printed.json")).expect("what was printed");
+    let report: Value = serde_json::from_slice(&printed).expect("JSON");
     for file in ["study.toml", "designs.csv", "front.csv", "run.json", "recording.rrd"] {
         assert!(out.join(file).metadata().expect(file).len() > 0);
     }
@@ -28,63 +30,54 @@ fn a_run_leaves_its_files() {
     assert!(header.starts_with(
         "id,generation,architecture,working_mode,R,r,Lb,rj,rp,mass_kg,workspace_radius_m,phi_deg,feasible,"
     ));
-    let designs = rows(&out.join("designs.csv"));
+    let designs = read_rows(&out.join("designs.csv"));
     assert_eq!(designs.len(), 600);
-    assert!(designs.iter().enumerate().all(|(id, row)| row[0] == id.to_string()));
+    assert!(designs.iter().enumerate().all(|(id, row)| row["id"] == id.to_string()));
     assert_eq!(report["evaluations"], 600);
     assert_eq!(report["outcome"], "completed");
-    assert_eq!(report["history"].as_array().expect("a list").len(), 20);
-    let feasible = designs.iter().filter(|row| &row[12] == "true").count();
+    assert_eq!(list(&report["history"]).len(), 20);
+    let feasible = designs.iter().filter(|row| row["feasible"] == "true").count();
     assert_eq!(report["feasible"], feasible);
-    let saved: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(out.join("run.json")).expect("the report")).expect("JSON");
+    let saved: Value = serde_json::from_slice(&fs::read(out.join("run.json")).expect("the report")).expect("JSON");
     assert_eq!(saved, report);
+}
 
-    // The front is feasible, sorted and non-dominated, and agrees with `evaluate` on the fine grid.
-    let front = rows(&out.join("front.csv"));
+/// The front is feasible, sorted and non-dominated, and agrees with `evaluate` on the fine grid.
+#[test]
+fn a_front_is_what_other_commands_say_of_its_designs() {
+    let out = small_run();
+    let front = read_rows(&out.join("front.csv"));
+    let report: Value = serde_json::from_slice(&fs::read(out.join("run.json")).expect("the report")).expect("JSON");
     assert_eq!(report["front_size"], front.len());
     assert!(front.len() > 3);
-    let number = |row: &csv::StringRecord, column: usize| row[column].parse::<f64>().expect("a number");
     for pair in front.windows(2) {
-        assert!(number(&pair[0], 9) < number(&pair[1], 9) && number(&pair[0], 10) < number(&pair[1], 10));
+        for column in ["mass_kg", "workspace_radius_m"] {
+            assert!(value(&pair[0], column) < value(&pair[1], column), "{pair:?}");
+        }
     }
     let row = &front[front.len() / 2];
-    let keys = ["R", "r", "Lb", "rj", "rp"];
-    let design: Vec<String> = keys
-        .iter()
-        .enumerate()
-        .map(|(k, key)| format!("{key}={}", &row[4 + k]))
-        .collect();
-    let ask = |command: &[&str]| -> serde_json::Value {
-        let output = kinefront()
-            .args(command)
-            .args(["--json", "--study"])
-            .arg(out.join("study.toml"))
-            .args(["--design", &format!("{} {}", &row[2], design.join(" "))])
-            .assert()
-            .success()
-            .get_output()
-            .stdout
-            .clone();
-        serde_json::from_slice(&output).expect("JSON")
+    let ask = |command: &str| {
+        let (study, design) = (out.join("study.toml"), design_of(row));
+        json(&format!(
+            "{command} --json --study '{}' --design '{design}'",
+            study.display()
+        ))
     };
-    let (evaluated, certified) = (ask(&["evaluate", "--grid", "fine"]), ask(&["certify"]));
-    assert_eq!(&row[35], "proved");
+    let (evaluated, certified) = (ask("evaluate --grid fine"), ask("certify"));
+    assert_eq!(row["certificate"], "proved");
     for (found, key, column) in [
-        (&evaluated, "mass_kg", 9),
-        (&certified, "lower_m", 10),
-        (&certified, "lower_m", 33),
-        (&certified, "upper_m", 34),
+        (&evaluated, "mass_kg", "mass_kg"),
+        (&certified, "lower_m", "workspace_radius_m"),
+        (&certified, "lower_m", "certified_lower_m"),
+        (&certified, "upper_m", "certified_upper_m"),
     ] {
         // Reading JSON may change the last bit.
-        let (found, wanted) = (found[key].as_f64().expect("a number"), number(row, column));
-        assert!(
-            (found - wanted).abs() <= 4.0 * f64::EPSILON * wanted,
-            "{key}: {found} instead of {wanted}"
-        );
+        let (found, wanted) = (number(&found[key]), value(row, column));
+        let is_same = (found - wanted).abs() <= 4.0 * f64::EPSILON * wanted;
+        assert!(is_same, "{key}: {found} instead of {wanted}");
     }
     // The ends and the knee are marked.
-    let marks: Vec<&str> = front.iter().map(|row| &row[32]).collect();
+    let marks: Vec<&str> = front.iter().map(|row| row["mark"].as_str()).collect();
     assert_eq!(marks[0], "lightest");
     assert_eq!(marks[marks.len() - 1], "largest");
     assert_eq!(marks.iter().filter(|mark| **mark == "knee").count(), 1);
@@ -96,22 +89,10 @@ fn a_run_leaves_its_files() {
 fn a_front_with_pockets_is_proved() {
     use kinefront_study::{RunFolder, Study};
     let folder = folder();
-    let out = folder.path().join("run");
-    kinefront()
-        .args([
-            "optimize",
-            "paper",
-            "--architectures",
-            "3-RRR",
-            "--evaluations",
-            "1500",
-            "--seed",
-            "7",
-        ])
-        .args(["--front", "100", "--quiet", "--no-recording", "--out"])
-        .arg(&out)
-        .assert()
-        .success();
+    let out = folder.join("run");
+    let line =
+        "optimize paper --architectures 3-RRR --evaluations 1500 --seed 7 --front 100 --quiet --no-recording --out run";
+    folder.run(line).success();
     let run = RunFolder::open(&out).expect("a run");
     let report = run.report().expect("a report");
     let proofs = report.proofs.as_ref().expect("proofs");
@@ -141,10 +122,7 @@ fn a_front_with_pockets_is_proved() {
         let phi = entry.row.phi.expect("a home").to_radians();
         let mut next = numbers(entry.id as u64);
         for _ in 0..2000 {
-            let (radius, theta) = (
-                entry.row.workspace_radius() * next().sqrt(),
-                std::f64::consts::TAU * next(),
-            );
+            let (radius, theta) = (entry.row.workspace_radius() * next().sqrt(), TAU * next());
             let turn = 10f64.to_radians() * (2.0 * next() - 1.0);
             let pose = kinefront_model::spatial::Pose::new(radius * theta.cos(), radius * theta.sin(), phi + turn);
             let found = model.pose(&entry.row.design, &pose).expect("a reachable pose");
@@ -158,12 +136,21 @@ fn a_front_with_pockets_is_proved() {
             assert!(limits.into_iter().all(keeps), "#{} at {pose:?}", entry.id);
         }
     }
-    // Without proofs, the radii are those of the fine grid, and the last columns are empty.
-    let study = folder.path().join("unproved.toml");
-    fs::write(&study, "architectures = [\"3-RRR\"]\n[workspace]\ncertify = false\n").expect("a study");
-    let out = folder.path().join("unproved");
-    optimize(&study, &out, &["--evaluations", "200", "--no-recording"]);
-    let rows = rows(&out.join("front.csv"));
+}
+
+/// Without proofs, the radii are those of the fine grid, and the columns of proofs are empty.
+#[test]
+fn a_front_can_be_left_unproved() {
+    let folder = folder();
+    let text = "architectures = [\"3-RRR\"]\n[workspace]\ncertify = false\n";
+    let (study, out) = (folder.write("unproved.toml", text), folder.join("unproved"));
+    optimize(
+        &study,
+        &out,
+        &["--evaluations", "200", "--front", "12", "--no-recording"],
+    );
+    let mut table = csv::Reader::from_path(out.join("front.csv")).expect("a table");
+    let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
     assert!(!rows.is_empty() && rows.iter().all(|row| row.iter().skip(33).all(str::is_empty)));
     check(&out).success();
 }
@@ -178,18 +165,17 @@ fn a_run_stops_by_the_rules_of_its_study() {
             "evaluations = 2000\n[optimizer.stagnation]\nevaluations = 200\ngain = 0.2",
         ),
         ("time_up", "evaluations = 100000000\ntime_limit_s = 0.5"),
-        ("completed", "evaluations = 900\nfront_designs = 7"),
+        ("completed", "evaluations = 400"),
     ];
     for (outcome, section) in sections {
-        let study = folder.path().join(format!("{outcome}.toml"));
-        let text = format!("name = \"{outcome}\"\narchitectures = [\"3-PRR\"]\n[optimizer]\n{section}\n");
-        fs::write(&study, text).expect("a study");
-        let out = folder.path().join(outcome);
-        let report = optimize(&study, &out, &[]);
+        let text =
+            format!("name = \"{outcome}\"\narchitectures = [\"3-PRR\"]\n[optimizer]\nfront_designs = 7\n{section}\n");
+        let study = folder.write("study.toml", text);
+        let report = optimize(&study, &folder.join(outcome), &["--no-recording"]);
         assert_eq!(report["outcome"], outcome);
         let done = report["evaluations"].as_u64().expect("a number");
         match outcome {
-            "completed" => assert_eq!(done, 900),
+            "completed" => assert_eq!(done, 400),
             "stagnated" => assert!(done < 2000, "{done} evaluations"),
             _ => assert!(done < 100_000_000, "{done} evaluations"),
         }
@@ -207,54 +193,39 @@ fn runs_repeat_to_the_bit() {
     let study = small_study(folder.path());
     for algorithm in ["front-de", "moga2", "nsga2"] {
         let run = |name: &str, study: &Path, more: &[&str]| {
-            let out = folder.path().join(format!("{algorithm}-{name}"));
-            optimize(study, &out, &[&["--algorithm", algorithm], more].concat());
+            let out = folder.join(format!("{algorithm}-{name}"));
+            let settings = ["--algorithm", algorithm, "--evaluations", "300", "--no-recording"];
+            optimize(study, &out, &[&settings[..], more].concat());
             ["designs.csv", "front.csv"].map(|file| fs::read(out.join(file)).expect("a table"))
         };
         let one = run("one", &study, &["--threads", "1"]);
-        assert!(
-            one == run("three", &study, &["--threads", "3"]),
-            "{algorithm} depends on the number of threads"
-        );
-        let left = folder.path().join(format!("{algorithm}-one/study.toml"));
-        assert!(
-            one == run("again", &left, &[]),
-            "{algorithm} does not repeat from the study it leaves"
-        );
-        assert!(
-            one != run("other", &study, &["--seed", "6"]),
-            "{algorithm} ignores its seed"
-        );
+        let three = run("three", &study, &["--threads", "3"]);
+        assert!(one == three, "{algorithm} depends on the number of threads");
+        let left = folder.join(format!("{algorithm}-one/study.toml"));
+        let again = run("again", &left, &[]);
+        assert!(one == again, "{algorithm} does not repeat from the study it leaves");
+        let other = run("other", &study, &["--seed", "6"]);
+        assert!(one != other, "{algorithm} ignores its seed");
     }
 }
 
 #[test]
 fn one_architecture_alone() {
     let folder = folder();
-    let out = folder.path().join("run");
-    let more = ["--architectures", "3-RPR", "--evaluations", "100"];
+    let out = folder.join("run");
+    let more = ["--architectures", "3-RPR", "--evaluations", "100", "--no-recording"];
     let report = optimize(&small_study(folder.path()), &out, &more);
     assert_eq!(report["evaluations"], 100);
-    let designs = rows(&out.join("designs.csv"));
+    let designs = read_rows(&out.join("designs.csv"));
     assert_eq!(designs.len(), 100);
-    assert!(designs.iter().all(|row| &row[2] == "3-RPR"));
+    assert!(designs.iter().all(|row| row["architecture"] == "3-RPR"));
 }
 
 #[test]
 fn piped_progress_is_plain_lines_and_quiet_is_quiet() {
     let folder = folder();
-    let study = small_study(folder.path());
-    let output = |out: &str, more: &[&str]| {
-        let mut command = kinefront();
-        command
-            .arg("optimize")
-            .arg(&study)
-            .arg("--out")
-            .arg(folder.path().join(out))
-            .args(more);
-        command.assert().success().get_output().clone()
-    };
-    let loud = String::from_utf8(output("loud", &[]).stderr).expect("UTF-8");
+    small_study(folder.path());
+    let loud = said(&folder.run("optimize small.toml --out loud").success());
     assert!(
         loud.contains("generation 20: 600/600 evaluations") && !loud.contains('\u{1b}'),
         "{loud}"
@@ -266,7 +237,8 @@ fn piped_progress_is_plain_lines_and_quiet_is_quiet() {
         "{loud}"
     );
     assert!(!loud.contains(" 0 designs"), "{loud}");
-    assert!(output("quiet", &["--quiet"]).stderr.is_empty());
+    let line = "optimize small.toml --evaluations 60 --out quiet --quiet";
+    folder.run(line).success().stderr("");
 }
 
 /// After Ctrl-C, the tables and the recording contain all designs that were evaluated, and the exit code is 130.
@@ -275,7 +247,7 @@ fn piped_progress_is_plain_lines_and_quiet_is_quiet() {
 fn an_interrupted_run_keeps_what_it_has() {
     let folder = folder();
     let study = small_study(folder.path());
-    let out = folder.path().join("run");
+    let out = folder.join("run");
     let mut child = program()
         .arg("optimize")
         .arg(&study)
@@ -285,32 +257,15 @@ fn an_interrupted_run_keeps_what_it_has() {
         .stderr(Stdio::null())
         .spawn()
         .expect("the program starts");
-    // Wait until some rows are written.
-    let begun = std::time::Instant::now();
-    loop {
-        let written = fs::File::open(out.join("designs.csv")).map_or(0, |file| BufReader::new(file).lines().count());
-        if written > 200 {
-            break;
-        }
-        assert!(begun.elapsed().as_secs() < 60, "no designs after a minute");
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
-    let killed = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .expect("kill runs");
-    assert!(killed.success());
+    wait_for(&out, 200);
+    signal(&child, "-INT");
     let mut printed = String::new();
-    child
-        .stdout
-        .take()
-        .expect("a pipe")
-        .read_to_string(&mut printed)
-        .expect("UTF-8");
+    let mut pipe = child.stdout.take().expect("a pipe");
+    pipe.read_to_string(&mut printed).expect("UTF-8");
     assert_eq!(child.wait().expect("an end").code(), Some(130));
-    let report: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
+    let report: Value = serde_json::from_str(&printed).expect("JSON");
     assert_eq!(report["outcome"], "interrupted");
-    let designs = rows(&out.join("designs.csv"));
+    let designs = read_rows(&out.join("designs.csv"));
     assert_eq!(report["evaluations"], designs.len());
     assert!(designs.len() < 1_000_000 && !out.join("front.csv").exists());
     super::recordings::agrees_with_its_tables(&out);

@@ -1,58 +1,45 @@
 //! Strength, materials, joints and parts, as a user of the program meets them.
 
-use std::fs;
 use std::path::Path;
 
 use predicates::prelude::*;
 use predicates::str::contains;
-use serde_json::Value;
 
-use super::support::{DESIGN, check, design_of, folder, json, kinefront, optimize};
+use super::support::{
+    DESIGN, check, design_of, folder, json, list, number, optimize, read_rows, rows_of, run, says, value,
+};
 
 const POSE: &str = "x=0.1 y=0.2 phi_deg=30";
 
 /// `pose` reports every member, joint and drive, as JSON and as a table, under the loads of the study and under a wrench of its own.
 #[test]
 fn a_pose_is_reported_with_its_strength() {
-    let of = |more: &[&str]| {
-        let plain = ["pose", "--design", DESIGN, "--pose", POSE, "--json"];
-        json(plain.iter().chain(more).copied())["strength"].clone()
-    };
-    let number = |value: &Value| value.as_f64().expect("a number");
-    let set = of(&[]);
-    assert_eq!(set["members"].as_array().expect("members").len(), 6);
-    assert_eq!(set["joints"].as_array().expect("joints").len(), 9);
-    assert_eq!(set["members"][0]["name"], "leg1_link");
+    let line = |more: &str| format!("pose --design '{DESIGN}' --pose '{POSE}' {more}");
+    let of = |more: &str| json(&line(&format!("{more} --json")))["strength"].clone();
+    let set = of("");
+    let members = list(&set["members"]);
+    assert_eq!((members.len(), list(&set["joints"]).len()), (6, 9));
+    assert_eq!(members[0]["name"], "leg1_link");
     assert_eq!(set["joints"][0]["name"], "leg1_joint1");
     assert!(set["safety_factor_min"].is_null() && set["actuator_torque_max_nm"].is_null());
-    let stresses = set["members"]
-        .as_array()
-        .expect("members")
-        .iter()
-        .map(|member| number(&member["stress_pa"]));
+    let stresses = members.iter().map(|member| number(&member["stress_pa"]));
     assert_eq!(stresses.fold(0.0, f64::max), number(&set["stress_max_pa"]));
     // One wrench of the set is no worse than the set.
-    let pulled = of(&["--wrench", "fx=100"]);
+    let pulled = of("--wrench fx=100");
     assert!(number(&pulled["stress_max_pa"]) < number(&set["stress_max_pa"]));
     assert!(number(&pulled["buckling_factor_min"]) > number(&set["buckling_factor_min"]));
     // The table says the same.
-    let table = kinefront()
-        .args(["pose", "--design", DESIGN, "--pose", POSE])
-        .assert()
-        .success();
-    table.stdout(
-        contains("largest stress")
-            .and(contains("leg3_joint3"))
-            .and(contains("actuators of legs 1, 2, 3")),
-    );
+    let table = run(&line("")).success();
+    let drives = contains("actuators of legs 1, 2, 3");
+    table.stdout(contains("largest stress").and(contains("leg3_joint3")).and(drives));
     for (wrench, words) in [
         ("fx=a", "`a` is not a number (key fx)"),
         ("f=1", "unknown key `f`"),
         ("fx=1 fx=2", "`fx` is given twice"),
         ("mz=inf", "mz is inf; it must be finite"),
     ] {
-        let arguments = ["pose", "--design", DESIGN, "--pose", POSE, "--wrench", wrench];
-        kinefront().args(arguments).assert().code(2).stderr(contains(words));
+        let told = run(&line(&format!("--wrench '{wrench}'"))).code(2);
+        told.stderr(says(words));
     }
 }
 
@@ -61,37 +48,26 @@ fn a_pose_is_reported_with_its_strength() {
 #[test]
 fn the_cell_of_a_builder_is_proved() {
     let folder = folder();
-    let run = folder.path().join("run");
+    let run = folder.join("run");
     optimize(
         Path::new("builders-cell"),
         &run,
         &["--evaluations", "600", "--front", "10", "--no-recording"],
     );
-    let front = fs::read_to_string(run.join("front.csv")).expect("a front");
-    let mut rows = front.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let header = rows.next().expect("a header");
-    let rows: Vec<Vec<&str>> = rows.collect();
-    assert!(rows.len() > 5, "{front}");
-    let of = |row: &[&str], name: &str| {
-        let place = header.iter().position(|found| *found == name).expect(name);
-        row[place].to_owned()
-    };
-    let number = |row: &[&str], name: &str| of(row, name).parse::<f64>().expect(name);
+    let rows = read_rows(&run.join("front.csv"));
+    assert!(rows.len() > 5, "{rows:?}");
     for row in &rows {
-        assert_eq!(of(row, "certificate"), "proved", "{row:?}");
-        assert!(number(row, "safety_factor_min") >= 2.0 && number(row, "buckling_factor_min") >= 3.0);
-        assert!(number(row, "value_g7") >= 0.005, "{row:?}");
+        assert_eq!(row["certificate"], "proved", "{row:?}");
+        assert!(value(row, "safety_factor_min") >= 2.0 && value(row, "buckling_factor_min") >= 3.0);
+        assert!(value(row, "value_g7") >= 0.005, "{row:?}");
     }
     // The column is what a design without it would touch: its clearance is told with its name.
-    let study = fs::read_to_string(run.join("study.toml")).expect("a study");
-    let nearer = folder.path().join("nearer.toml");
+    let study = folder.read("run/study.toml");
     let moved = study.replace("centre_m = [0.5, 0.4]", "centre_m = [0.36, 0.27]");
     assert_ne!(moved, study);
-    fs::write(&nearer, moved).expect("written");
-    let row = &rows[0];
-    let design = design_of(|name| of(row, name));
-    let nearer = nearer.to_str().expect("a path");
-    let found = json(["evaluate", "--design", &design, "--study", nearer, "--json"]);
+    folder.write("nearer.toml", moved);
+    let design = design_of(&rows[0]);
+    let found = folder.json(&format!("evaluate --design '{design}' --study nearer.toml --json"));
     assert_eq!(found["feasible"], false);
     assert_eq!(found["clearance_pair"][1], "column", "{found}");
 }
@@ -100,7 +76,6 @@ fn the_cell_of_a_builder_is_proved() {
 #[test]
 fn a_machine_that_holds_is_found_and_can_be_ordered() {
     let folder = folder();
-    let study = folder.path().join("cell.toml");
     let text = r#"
 name = "cell"
 architectures = ["3-RPR", "3-PRR"]
@@ -122,38 +97,28 @@ force_range_n = [300.0, 300.0, 200.0]
 legs = { kind = "tube", catalogue = "en-10255-medium" }
 platform = { kind = "tube", catalogue = "en-10255-medium" }
 "#;
-    fs::write(&study, text).expect("a study file");
-    let out = folder.path().join("run");
+    let (study, out) = (folder.write("cell.toml", text), folder.join("run"));
     let report = optimize(
         &study,
         &out,
         &["--evaluations", "200", "--front", "10", "--no-recording"],
     );
     assert!(report["front_size"].as_u64().is_some_and(|size| size > 5), "{report}");
-    let front = fs::read_to_string(out.join("front.csv")).expect("a front");
-    let mut rows = front.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let header = rows.next().expect("a header");
-    assert_eq!(header[header.len() - 2..], ["leg_section", "platform_section"]);
-    let column = |name: &str| header.iter().position(|found| *found == name).expect(name);
-    let mut lightest = None;
-    for row in rows {
-        let number = |name: &str| row[column(name)].parse::<f64>().expect(name);
-        assert!(
-            number("safety_factor_min") >= 2.0 && number("buckling_factor_min") >= 3.0,
-            "{row:?}"
-        );
-        assert!(row[column("leg_section")].starts_with("DN"), "{row:?}");
-        lightest.get_or_insert((row[column("id")].to_owned(), number("mass_kg")));
+    let front = folder.read("run/front.csv");
+    let header = front.lines().next().expect("a header");
+    assert!(header.ends_with(",leg_section,platform_section"), "{header}");
+    let rows = rows_of(front.as_bytes());
+    for row in &rows {
+        let factors = ["safety_factor_min", "buckling_factor_min"].map(|name| value(row, name));
+        assert!(factors[0] >= 2.0 && factors[1] >= 3.0, "{row:?}");
+        assert!(row["leg_section"].starts_with("DN"), "{row:?}");
     }
-    let (id, mass) = lightest.expect("a design");
-    let row = format!("{}#{id}", out.join("front.csv").display());
-    let parts = folder.path().join("parts.csv");
-    kinefront()
-        .args(["export", &row, "--out"])
-        .arg(&parts)
-        .assert()
+    // The parts of the lightest design have its mass.
+    let (id, mass) = (&rows[0]["id"], value(&rows[0], "mass_kg"));
+    folder
+        .run(&format!("export run/front.csv#{id} --out parts.csv"))
         .success();
-    let parts = fs::read_to_string(parts).expect("the parts");
+    let parts = folder.read("parts.csv");
     let counted = parts.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
     let total: f64 = counted
         .filter(|row| row[9] == "true")
@@ -164,27 +129,18 @@ platform = { kind = "tube", catalogue = "en-10255-medium" }
         parts.contains("carriage,") && parts.contains("platform bar,DN"),
         "{parts}"
     );
-    let evaluated = json([
-        "evaluate",
-        "--study",
-        study.to_str().expect("a path"),
-        "--design",
-        DESIGN,
-        "--json",
-    ]);
-    let limits = evaluated["limits"].as_array().expect("limits");
-    assert_eq!(limits[0]["quantity"], "safety_factor_min");
-    assert_eq!(limits[1]["quantity"], "buckling_factor_min");
+    let evaluated = folder.json(&format!("evaluate --study cell.toml --design '{DESIGN}' --json"));
+    let limits = [0, 1].map(|place: usize| &evaluated["limits"][place]["quantity"]);
+    assert_eq!(limits, ["safety_factor_min", "buckling_factor_min"]);
     check(&out).success();
 }
 
 #[test]
 fn a_study_says_what_it_leaves_open_and_what_cannot_be_computed() {
     let folder = folder();
-    let path = folder.path().join("mine.toml");
     let checked = |text: &str| {
-        fs::write(&path, text).expect("a study file");
-        kinefront().args(["study", "check"]).arg(&path).assert()
+        folder.write("mine.toml", text);
+        folder.run("study check mine.toml")
     };
     checked("").success().stdout(
         contains("valid")
@@ -206,24 +162,14 @@ fn a_study_says_what_it_leaves_open_and_what_cannot_be_computed() {
             "all actuators turn",
         ),
     ] {
-        checked(text).code(2).stderr(contains(words));
+        checked(text).code(2).stderr(says(words));
     }
     // A question that is asked anew requires a clearance; the paper's does not.
-    let new = folder.path().join("new.toml");
-    kinefront().args(["study", "new"]).arg(&new).assert().success();
-    let text = fs::read_to_string(&new).expect("a study");
+    folder.run("study new new.toml").success();
+    let text = folder.read("new.toml");
     for line in ["\nclearance_min_m = 0.005", "\nstacking = \"chosen\""] {
         assert!(text.contains(line), "{text}");
     }
-    let copy = folder.path().join("copy.toml");
-    kinefront()
-        .args(["study", "new", "--from", "paper"])
-        .arg(&copy)
-        .assert()
-        .success();
-    assert!(
-        fs::read_to_string(&copy)
-            .expect("a study")
-            .contains("\n# clearance_min_m = 0.005")
-    );
+    folder.run("study new --from paper copy.toml").success();
+    assert!(folder.read("copy.toml").contains("\n# clearance_min_m = 0.005"));
 }

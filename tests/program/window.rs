@@ -5,7 +5,7 @@ use std::process::{Child, Command, Stdio};
 
 use predicates::prelude::*;
 
-use super::support::{folder, kinefront, small_study};
+use super::support::{folder, kinefront, says, small_study};
 
 #[test]
 fn without_a_display_the_headless_command_is_named() {
@@ -17,28 +17,18 @@ fn without_a_display_the_headless_command_is_named() {
         .arg("explore")
         .assert()
         .code(1)
-        .stderr(predicate::str::contains("no display").and(predicate::str::contains("kinefront optimize")));
+        .stderr(says("no display").and(says("kinefront optimize")));
 }
 
 #[test]
 fn what_cannot_be_opened_is_told_before_a_window_is() {
     let folder = folder();
-    let broken = folder.path().join("broken.rrd");
-    std::fs::write(&broken, b"nothing of ours").expect("a file");
-    kinefront()
-        .arg("explore")
-        .arg(&broken)
-        .assert()
-        .code(2)
-        .stderr(predicate::str::contains("is not a recording of a run"));
-    let script = folder.path().join("script");
-    std::fs::write(&script, "wait finished\ndance\n").expect("a file");
-    kinefront()
-        .args(["explore", "--script"])
-        .arg(&script)
-        .assert()
-        .code(2)
-        .stderr(predicate::str::contains("line 2").and(predicate::str::contains("dance")));
+    folder.write("broken.rrd", b"nothing of ours");
+    let told = folder.run("explore broken.rrd").code(2);
+    told.stderr(says("is not a recording of a run"));
+    folder.write("script", "wait finished\ndance\n");
+    let told = folder.run("explore --script script").code(2);
+    told.stderr(says("line 2").and(says("dance")));
 }
 
 /// An X server started by the test, with the name of its display.
@@ -81,12 +71,7 @@ fn the_whole_window_runs_shows_a_design_and_saves() {
     };
     let folder = folder();
     let study = small_study(folder.path());
-    let (before, after, recording) = (
-        folder.path().join("before.png"),
-        folder.path().join("after.png"),
-        folder.path().join("session.rrd"),
-    );
-    let script = folder.path().join("script");
+    let [before, after, recording] = ["before.png", "after.png", "session.rrd"].map(|name| folder.join(name));
     let text = format!(
         "wait evaluations 300\nheatmap none\nwait finished\nwait drawn\nwait frames 20\npicture {}\n\
          choose knee\nheatmap inverse_condition\nellipsoids stiffness\nwait drawn\nwait frames 20\npicture {}\nsave {}\nquit\n",
@@ -94,7 +79,7 @@ fn the_whole_window_runs_shows_a_design_and_saves() {
         after.display(),
         recording.display()
     );
-    std::fs::write(&script, text).expect("a script");
+    let script = folder.write("script", text);
     kinefront()
         .env("DISPLAY", &display.1)
         .env_remove("WAYLAND_DISPLAY")
