@@ -309,8 +309,8 @@ fn certificates_answer_a_stream() {
     // The pocket of a design of a front: the grid claims 0.7147 m, of which 0.6423 m are there.
     let pocket = "3-RRR R=1.0094566953033497 r=0.13093847935116149 Lb=0.7999739586075939 rj=0.03839109236004963 rp=0.02315007385818249";
     let lines = format!("{DESIGN}\nnonsense\n{pocket}\n3-PRR R=9 r=0.5 Lb=1 rj=0.03 rp=0.03\n");
-    let answers = answers("certify", lines.repeat(3));
-    assert_eq!(answers.len(), 12);
+    let answers = answers("certify", lines.repeat(5));
+    assert_eq!(answers.len(), 20);
     for four in answers.chunks(4) {
         assert_eq!(four[0]["verdict"], "proved");
         let error = four[1]["error"].as_str().unwrap_or_default();

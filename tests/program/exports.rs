@@ -113,7 +113,8 @@ fn mujoco_moves_every_other_architecture() {
 fn gltf_passes_the_validator() {
     let folder = folder();
     let designs: Vec<&str> = DESIGNS.iter().map(|(design, _)| *design).chain(OTHERS).collect();
-    let files: Vec<PathBuf> = sample(designs.into_iter(), 6)
+    let files: Vec<PathBuf> = designs
+        .into_iter()
         .enumerate()
         .map(|(index, design)| export(design, &folder, &format!("{index}.glb")))
         .collect();
@@ -266,7 +267,10 @@ fn json_holds_the_design() {
         assert!(difference.abs() < 1e-12);
     }
     let bodies = list(&file["bodies"]);
-    let names: Vec<&str> = bodies.iter().filter_map(|body| body["name"].as_str()).collect();
+    let names: Vec<&str> = bodies
+        .iter()
+        .map(|body| body["name"].as_str().expect("a name"))
+        .collect();
     assert_eq!(names[..2], ["leg1_slider", "leg1_link"]);
     assert_eq!(names[6..], ["platform"]);
     let mass: f64 = bodies.iter().map(|body| number(&body["mass_kg"])).sum();

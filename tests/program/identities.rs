@@ -68,7 +68,7 @@ fn prices_of_front_designs_of_five_questions_keep_the_identities() {
     let mut checked = 0;
     for of_study in lines.chunk_by(|a, b| a.0 == b.0) {
         let study = of_study[0].0;
-        let designs = sample(of_study.iter().rev(), 4).enumerate();
+        let designs = sample(of_study.iter().rev(), 10).enumerate();
         let rows: String = designs.map(|(id, (_, design))| format!("{id},{design}\n")).collect();
         folder.write("table.csv", format!("{header}\n{rows}"));
         let study = match Builtin::find(study) {
@@ -84,5 +84,5 @@ fn prices_of_front_designs_of_five_questions_keep_the_identities() {
             }
         }
     }
-    assert_eq!(checked, repetitions(20, 102));
+    assert_eq!(checked, repetitions(48, 102));
 }

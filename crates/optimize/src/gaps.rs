@@ -128,7 +128,7 @@ mod tests {
                 let [polar, around] = [polar, around].map(|part| part * std::f64::consts::FRAC_PI_2);
                 let across = libm::sin(polar);
                 let unit = [across * libm::cos(around), across * libm::sin(around), libm::cos(polar)];
-                let hole = squared_distance(&[0.577; 3], &unit);
+                let hole: f64 = unit.map(|part| (part - 0.577) * (part - 0.577)).iter().sum();
                 if hole > 0.1 && !front.iter().any(|other| other[..] == unit.map(|part| 1.0 - part)[..]) {
                     front.push(unit.map(|part| 1.0 - part).into());
                 }

@@ -7,7 +7,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, LazyLock, Mutex, OnceLock};
-use std::time::{Duration, Instant, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 
 use assert_cmd::assert::Assert;
 use kinefront_study::{RunFolder, TableRow};
@@ -55,18 +55,25 @@ fn search(study: &Path, out: &Path, more: &[&str]) -> Assert {
     command.args(more).assert().success()
 }
 
-/// The folder of the runs that tests share. They are those of the program that is tested: what an earlier one has left is removed.
+/// The folder of the runs that tests share. They are those of the program that is tested: what earlier ones have left is removed after a
+/// day.
 static PREPARED: LazyLock<PathBuf> = LazyLock::new(|| {
     let program = fs::metadata(env!("CARGO_BIN_EXE_kinefront")).expect("the program");
     let built = program.modified().expect("the time when it was built");
-    let built = built.duration_since(UNIX_EPOCH).expect("a time").as_nanos().to_string();
+    let mut hasher = DefaultHasher::new();
+    (env!("CARGO_BIN_EXE_kinefront"), program.len(), built).hash(&mut hasher);
     let all = Path::new(env!("CARGO_TARGET_TMPDIR")).join("prepared-runs");
+    // Tests of another build may run at this moment.
+    let is_old = |entry: &fs::DirEntry| {
+        let age = entry.metadata().ok()?.modified().ok()?.elapsed().ok()?;
+        Some(age > Duration::from_hours(24))
+    };
     for entry in fs::read_dir(&all).into_iter().flatten().flatten() {
-        if entry.file_name() != *built {
+        if is_old(&entry) == Some(true) {
             let _ = fs::remove_dir_all(entry.path());
         }
     }
-    let own = all.join(built);
+    let own = all.join(hasher.finish().to_string());
     fs::create_dir_all(&own).expect("a folder");
     own
 });

@@ -94,7 +94,7 @@ impl LegSizes {
         let first = if self.chain.is_on_rails() {
             from_base.dot(self.frame.rail)
         } else {
-            angle
+            wrapped(angle)
         };
         match self.chain.joints {
             [_, Revolute, Revolute] => {
@@ -167,5 +167,35 @@ impl LegSizes {
     /// Returns the same for a leg on a rail, which has to bridge the distance of `O` from the line of the rail.
     pub(in crate::mechanism) fn assembly_from_rail(&self, reach: f64) -> Assembly {
         self.assembly(reach, cross(self.frame.rail, self.frame.anchor).abs())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::BarPosture;
+
+    /// A leg that points against the axis `Ox` has the angle π, whatever the sign of the zero beside it.
+    #[test]
+    fn angles_of_base_joints_are_above_minus_pi() {
+        let design: Design = "3-RPR R=1 r=0.2 Lb=1.2 rj=0.02 rp=0.03".parse().expect("a design");
+        let leg = LegSizes::new(&design, &LegSettings::default(), 0);
+        let [a, along] = [leg.frame.anchor, 0.9];
+        for zero in [0.0, -0.0] {
+            let direction = DVec2::new(-1.0, zero);
+            let posture = ChainPosture {
+                a,
+                b: a,
+                c: a + direction * along,
+                slider: None,
+                proximal: None,
+                distal: BarPosture::new(direction, along),
+                beam: along,
+                guides: [None, Some(direction), None],
+                limit_margin: 0.1,
+            };
+            let [first, second, _] = leg.joint_values(&posture, DVec2::X);
+            assert_eq!([first, second], [std::f64::consts::PI, along], "{direction}");
+        }
     }
 }

@@ -139,7 +139,7 @@ impl Elements {
     /// Adds the joints and the bars of a leg. Returns the coordinate of its actuator.
     fn add_leg(&mut self, architecture: Architecture, leg: &LegPosture, bars: &[FrameBar]) -> usize {
         let chain = architecture.chain();
-        let mut driven = 0;
+        let mut driven = None;
         let mut body = Matrix6xX::zeros(self.mass.ncols());
         let mut joint = 0;
         let first = 3 - bars.len();
@@ -150,7 +150,7 @@ impl Elements {
                 let mut column = body.column_mut(coordinate);
                 column += joint_twist(leg, chain, joint);
                 if joint == architecture.driven() {
-                    driven = coordinate;
+                    driven = Some(coordinate);
                 }
                 if joint == 0 && chain.is_on_rails() {
                     self.add_point(&body, about_p(leg, leg.chain.b), DRIVES.slider_mass);
@@ -165,7 +165,7 @@ impl Elements {
             self.add_bar(bar, &held, &body, &tip);
             body = tip;
         }
-        driven
+        driven.expect("a driven joint")
     }
 
     /// Adds the elements of a bar from a body to its tip, and of what goes on beyond its ends. The tube of a telescopic leg moves along it
