@@ -201,7 +201,8 @@ fn a_folder_is_repaired_where_nothing_is_guessed() {
         let text = folder.read("run/run.json");
         folder.write("run/run.json", text.replace(from, to));
     };
-    let damages: [(&str, &dyn Fn(&Path)); 6] = [
+    type Damage<'a> = &'a dyn Fn(&Path);
+    let damages: [(&str, Damage<'_>); 6] = [
         ("front.csv", &|path| flip(path, 0.5)),
         ("front.csv", &remove),
         ("recording.rrd", &remove),

@@ -28,7 +28,6 @@ const SELECTING: &str = r#"
     Lb_m = [0.2, 1.5]
     [optimizer]
     evaluations = 300
-    front_designs = 12
 "#;
 
 /// A run selects drives, its table and its parts name them, and readers of the table know them again.
