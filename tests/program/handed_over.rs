@@ -201,7 +201,7 @@ fn hostile_folders_are_survived() {
     fs::create_dir(folder.join("results")).expect("a folder");
     for number in sample(0..count, 5) {
         let hostile = format!("hostile/run{number}");
-        let to = |name: &str| format!("results/{name}{number}");
+        let to = |name: &str| format!("results/{number}-{name}");
         let commands = [
             format!("check {hostile}"),
             format!("export {hostile} --out {}", to("front.csv")),

@@ -63,9 +63,9 @@ fn a_run_selects_drives_from_a_catalogue() {
     );
     let export = |format: &str| folder.run(&format!("export run/front.csv#{} --format {format} --out -", row["id"]));
     export("csv-parts").success().stdout(contains(drive));
-    // A file for other programs states the same of the poses.
+    // A file for other programs states the same.
     let exported = parsed(&export("json").success());
-    assert_eq!(exported["evaluation"]["over_workspace"], found["over_workspace"]);
+    assert_eq!(exported["evaluation"]["quantities"], found["quantities"]);
     assert_eq!(exported["evaluation"]["task"], found["task"]);
     check(&folder.join("run")).success();
     // A table that names a drive that the catalogue does not have is not that of the run.
