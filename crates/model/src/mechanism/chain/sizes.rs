@@ -180,7 +180,7 @@ mod tests {
     fn angles_of_base_joints_are_above_minus_pi() {
         let design: Design = "3-RPR R=1 r=0.2 Lb=1.2 rj=0.02 rp=0.03".parse().expect("a design");
         let leg = LegSizes::new(&design, &LegSettings::default(), 0);
-        let [a, along] = [leg.frame.anchor, 0.9];
+        let (a, along) = (leg.frame.anchor, 0.9);
         for zero in [0.0, -0.0] {
             let direction = DVec2::new(-1.0, zero);
             let posture = ChainPosture {
