@@ -24,7 +24,7 @@ fn a_run_that_is_killed_and_resumed_is_the_run_that_was_not() {
     let folder = folder();
     let study = small_study(folder.path());
     for (algorithm, seed) in [("front-de", 1), ("moga2", 2), ("nsga2", 3)] {
-        let arguments = ["--algorithm", algorithm, "--threads", "2", "--evaluations", "300"];
+        let arguments = ["--algorithm", algorithm, "--threads", "2", "--evaluations", "400"];
         let whole = folder.join(format!("{algorithm}-whole"));
         let since = Instant::now();
         optimize(&study, &whole, &arguments);
@@ -289,7 +289,7 @@ fn a_recording_can_be_thinned_or_left_out() {
     assert_eq!([recorded(&all), recorded(&tenth)], [600, 60]);
     // A resumed run records as it did.
     resume(&tenth, &["--evaluations", "700"]).success();
-    assert_eq!(recorded(&tenth), 70);
+    assert_eq!(recorded(&tenth), 90);
     check(&tenth).success();
     resume(&none, &["--evaluations", "700"]).success();
     assert!(!none.join("recording.rrd").exists());
