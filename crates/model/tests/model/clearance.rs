@@ -149,7 +149,7 @@ fn compare(architecture: Architecture, poses: usize, faults: &[Fault]) -> (usize
 #[test]
 fn clearances_are_those_of_capsules_in_space() {
     for &architecture in Architecture::ALL {
-        let poses = repetitions(10_000, 100_000);
+        let poses = repetitions(3000, 100_000);
         let (overlapping, _) = compare(architecture, poses, &[]);
         assert!(
             (poses / 100..=poses * 99 / 100).contains(&overlapping),

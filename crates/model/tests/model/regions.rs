@@ -8,6 +8,7 @@ use kinefront_model::mechanism::{Architecture, Design, WorkingMode};
 use kinefront_model::polygon::{Polygon, PolygonError};
 use kinefront_model::spatial::{Pose, unit};
 use kinefront_model::workspace::Region;
+use kinefront_testkit::repetitions;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
@@ -75,14 +76,14 @@ const LEAST_BUCKLING: f64 = 1000.0;
 fn the_home_orientation_is_the_best_one_for_the_objective() {
     let regions = |radius: f64| [Region::Disc(0.7 * radius), rectangle(radius, 0.6 * radius)];
     let objectives = [PoseScalar::StiffnessXy, PoseScalar::Dexterity, PoseScalar::Transmission];
-    let mut cases: Vec<(Design, Region, PoseScalar, bool)> = designs(40)
+    let mut cases: Vec<(Design, Region, PoseScalar, bool)> = designs(repetitions(16, 40))
         .into_iter()
         .flat_map(|(design, radius)| regions(radius).map(|region| (design, region)))
         .flat_map(|(design, region)| objectives.map(|scalar| (design, region.clone(), scalar, false)))
         .collect();
     // Limits that depend on loads are examined last.
     let under_loads = [PoseScalar::StiffnessXy, PoseScalar::BucklingFactor];
-    let of_loads = designs(8).into_iter().flat_map(|(design, radius)| {
+    let of_loads = designs(repetitions(4, 8)).into_iter().flat_map(|(design, radius)| {
         let [_, rectangle] = regions(radius);
         under_loads.map(|scalar| (design, rectangle.clone(), scalar, true))
     });

@@ -99,7 +99,7 @@ const BOUNDS: [[f64; 2]; 5] = [[0.5, 4.0], [0.1, 4.0], [0.5, 4.0], [0.0, 0.1], [
 /// Designs of each architecture, spread over the paper's bounds.
 #[test]
 fn designs_of_each_architecture_have_the_plain_radius() {
-    let count = repetitions(500, 10_000);
+    let count = repetitions(150, 10_000);
     let bounds = BOUNDS.map(|[lower, upper]| Variable::Real { lower, upper });
     for &architecture in Architecture::ALL {
         let design = |x: &[f64]| {

@@ -169,7 +169,7 @@ fn a_blind_proof_stops_before_the_known_pose() {
 /// Random poses of proved discs are feasible, by the model's own formulas.
 #[test]
 fn no_pose_of_a_proved_disc_is_infeasible() {
-    let count = repetitions(20_000, 100_000);
+    let count = repetitions(5000, 100_000);
     let model = Model::default();
     let infeasible: usize = cases()
         .par_iter()
@@ -268,7 +268,7 @@ fn other_studies_are_certified() {
 /// infeasible, and a proof that looks for no infeasible pose stops before the one that is known.
 #[test]
 fn other_definitions_are_certified() {
-    let poses = repetitions(2000, 20_000);
+    let poses = repetitions(500, 20_000);
     let designs = cases();
     let tasks: Vec<_> = other_models()
         .flat_map(|(name, model)| designs.iter().map(move |case| (name, model.clone(), case.design)))
