@@ -162,23 +162,4 @@ mod tests {
             }
         }
     }
-
-    /// What encloses the positions of a box is their polynomial, up to its remainder.
-    #[test]
-    fn enclosures_are_the_positions() {
-        let triangle = [[0.3, -0.2], [1.1, 0.4], [-0.5, 0.9]].map(DVec2::from_array);
-        let rectangle = [[-0.4, 0.1], [0.7, 0.9]].map(DVec2::from_array);
-        for patch in [Patch::Disc, Patch::Rectangle(rectangle), Patch::Triangle(triangle)] {
-            let sides = [(0.6, 0.05), (0.4, 0.03)];
-            let found = patch.enclose(sides);
-            for (a, b) in [(-1.0, -1.0), (1.0, -1.0), (0.3, 0.8), (0.0, 0.0), (1.0, 1.0)] {
-                let position = patch.position([sides[0].0 + a * sides[0].1, sides[1].0 + b * sides[1].1]);
-                for (told, wanted) in found.iter().zip(position.to_array()) {
-                    let error = (told.value([a, b, 0.0]) - wanted).abs();
-                    assert!(told.remainder < 1e-4, "{patch:?}: {}", told.remainder);
-                    assert!(error <= told.remainder + 1e-15, "{patch:?} at {a}, {b}: {error}");
-                }
-            }
-        }
-    }
 }
