@@ -295,7 +295,8 @@ impl TaskMotion {
     /// Iterates over the cycle in equal steps of time \[s\], and ends with the end of the cycle. After each piece the platform rests.
     pub fn at_steps(&self, step: f64) -> impl Iterator<Item = TaskInstant> + '_ {
         let cycle = self.cycle_time();
-        let steps = (cycle / step).ceil() as usize;
+        // What rounding adds to the cycle is no step of its own.
+        let steps = (cycle / step - 1e-9).ceil() as usize;
         let (mut place, mut start) = (0, 0.0);
         (0..=steps).map(move |count| {
             let time = (count as f64 * step).min(cycle);
