@@ -238,18 +238,34 @@ fn mujoco_needs_the_same_forces() {
     }
 }
 
+/// A machine with a payload, motors and drives that follows a star and rests at its corners.
+const STAR: &str = "[joints]\nrevolute_kg = 0.5\ncarriage_kg = 1.5\nmotor_kg = 2.5\n\
+    [payload]\nmass_kg = 4.0\ninertia_kg_m2 = 0.2\ncentre_m = [0.11, -0.07]\n\
+    [drives]\nslider_mass_kg = 1.2\nprismatic_inertia_kg = 2.0\nrevolute_inertia_kg_m2 = 2.0\n\
+    [loads]\ngravity_m_per_s2 = [0.0, -9.81, 0.0]\n\
+    [task]\nshape = \"star\"\nshare = 0.5\ncycle_time_s = 3.0\ndwell_s = 0.05\n";
+
+/// A trajectory has a row each millisecond, also where the durations of its pieces add up to the cycle but for rounding.
+#[test]
+fn a_trajectory_has_a_row_each_millisecond() {
+    let folder = folder();
+    folder.write("study.toml", STAR);
+    for design in DESIGNS.iter().map(|(design, _)| *design).chain(OTHERS) {
+        let line = format!("export --design '{design}' --format csv-trajectory --out - --study study.toml");
+        let told = folder.run(&line).success();
+        let rows = rows_of(&told.get_output().stdout);
+        assert_eq!(rows.len(), 3001, "{design}");
+        assert!((value(&rows[3000], "t_s") - 3.0).abs() < 1e-12, "{design}");
+    }
+}
+
 /// A controller that takes the reference trajectory moves the exported mechanism along its path in MuJoCo, with the payload and the rotors,
 /// and the keyframes are the poses at which it rests.
 #[test]
 fn mujoco_follows_the_reference_trajectory() {
     let Some(_) = python(&["mujoco", "numpy"]) else { return };
     let folder = folder();
-    let text = "[joints]\nrevolute_kg = 0.5\ncarriage_kg = 1.5\nmotor_kg = 2.5\n\
-                [payload]\nmass_kg = 4.0\ninertia_kg_m2 = 0.2\ncentre_m = [0.11, -0.07]\n\
-                [drives]\nslider_mass_kg = 1.2\nprismatic_inertia_kg = 2.0\nrevolute_inertia_kg_m2 = 2.0\n\
-                [loads]\ngravity_m_per_s2 = [0.0, -9.81, 0.0]\n\
-                [task]\nshape = \"star\"\nshare = 0.5\ncycle_time_s = 3.0\ndwell_s = 0.05\n";
-    folder.write("study.toml", text);
+    folder.write("study.toml", STAR);
     let designs: Vec<&str> = DESIGNS.iter().map(|(design, _)| *design).chain(OTHERS).collect();
     for design in sample(designs.into_iter(), 4) {
         let name = design.split(' ').next().expect("a name");
